@@ -1,0 +1,142 @@
+#!/usr/bin/python3
+"""The command line: export, random, verify, inspect."""
+
+import argparse
+import json
+import os
+import sys
+
+from . import VERSION, networks
+from .errors import ConvertError
+
+
+def main(arguments=None):
+    options = _parser().parse_args(arguments)
+    try:
+        return options.run(options) or 0
+    except ConvertError as error:
+        message = str(error)
+    except OSError as error:
+        message = f"{error.filename}: {error.strerror}" if error.filename else str(error)
+    # One line of printable characters, whatever a file's content put into it.
+    print("converters: " + "".join(c if c.isprintable() else "?" for c in message),
+          file=sys.stderr)
+    return 2
+
+
+def _parser():
+    parser = argparse.ArgumentParser(prog="python3 -m converters", description=__doc__)
+    parser.add_argument("--version", action="version", version=f"gestus converters {VERSION}")
+    commands = parser.add_subparsers(required=True, metavar="COMMAND")
+
+    export = commands.add_parser("export", help="checkpoint -> weights file")
+    export.add_argument("checkpoint", help="file of torch.save (zip format)")
+    _network_options(export)
+    export.add_argument("-o", "--output", required=True, metavar="WEIGHTS.fb")
+    export.add_argument("--ast", metavar="AST.pth",
+                        help="published AST checkpoint for the encoders the checkpoint lacks")
+    export.add_argument("--allow-unused", action="store_true",
+                        help="leave out tensors that are not part of the network")
+    export.add_argument("--no-self-test", action="store_true")
+    export.add_argument("--trained", action="store_true", help="say that the weights are trained")
+    for name, text in (("trained-on", "corpus"), ("trained-at", "ISO 8601 date"),
+                       ("recipe", "how the weights were made"), ("licence", "of the weights")):
+        export.add_argument("--" + name, help=text)
+    export.set_defaults(run=_export)
+
+    random = commands.add_parser("random", help="weights file with random weights")
+    _network_options(random)
+    random.add_argument("--seed", type=int, default=0)
+    random.add_argument("-o", "--output", required=True, metavar="WEIGHTS.fb")
+    random.add_argument("--checkpoint-out", metavar="MODEL.pt",
+                        help="also save the weights with torch.save")
+    random.add_argument("--no-self-test", action="store_true")
+    random.set_defaults(run=_random)
+
+    verify = commands.add_parser("verify", help="compare the engine with PyTorch")
+    verify.add_argument("weights", metavar="WEIGHTS.fb")
+    verify.add_argument("--checkpoint", metavar="CHECKPOINT.pt",
+                        help="take PyTorch's weights from here instead of the weights file")
+    verify.add_argument("--ast", metavar="AST.pth", help="as for export")
+    verify.add_argument("--infer-cli", default="infer-cli", metavar="PATH")
+    verify.add_argument("--seed", type=int, default=0)
+    verify.add_argument("--tolerance", type=float, default=1e-4,
+                        help="largest relative error of an output (default %(default)s)")
+    verify.set_defaults(run=_verify)
+
+    inspect = commands.add_parser("inspect", help="what a checkpoint or a weights file holds")
+    inspect.add_argument("file")
+    inspect.set_defaults(run=_inspect)
+    return parser
+
+
+def _network_options(parser):
+    parser.add_argument("--kind", choices=("zs_mstm1", "ast"), default="zs_mstm1")
+    parser.add_argument("--config", metavar="CONFIG.json",
+                        help="fields of the schema's table Network: config, joints, "
+                             "normalisations; what is absent takes the schema's default")
+
+
+def _network(options):
+    if options.config is None:
+        return networks.default_network(options.kind)
+    with open(options.config, encoding="utf-8") as file:
+        try:
+            fields = json.load(file)
+        except ValueError as error:
+            raise ConvertError(f"{options.config}: {error}") from None
+    if not isinstance(fields, dict):
+        raise ConvertError(f"{options.config}: expected an object with the fields of a network")
+    try:
+        return networks.complete(options.kind, fields)
+    except ConvertError as error:
+        raise ConvertError(f"{options.config}: {error}") from None
+
+
+def _export(options):
+    from .checkpoint import read_checkpoint
+    from .export import export
+    provenance = {"trained": options.trained, "trained_on": options.trained_on,
+                  "trained_at": options.trained_at, "recipe": options.recipe,
+                  "licence": options.licence}
+    report = export(read_checkpoint(options.checkpoint), _network(options), options.output,
+                    provenance, ast=options.ast and read_checkpoint(options.ast),
+                    allow_unused=options.allow_unused, self_test=not options.no_self_test)
+    _done(report, options.output)
+
+
+def _random(options):
+    from .export import write
+    from .random_weights import random_weights, save_checkpoint
+    if options.seed < 0:
+        raise ConvertError(f"--seed: {options.seed}, expected 0 or more")
+    network = _network(options) if options.config else networks.demo_network(options.kind)
+    tensors = random_weights(network, options.seed)
+    provenance = {"trained": False, "licence": "as gestus",
+                  "recipe": f"random, seed {options.seed}; untrained, the output is noise"}
+    report = []
+    write(options.output, network, tensors, provenance, not options.no_self_test, report)
+    if options.checkpoint_out:
+        save_checkpoint(options.checkpoint_out, tensors)
+        report.append(f"{options.checkpoint_out}: {len(tensors)} tensors")
+    _done(report, options.output)
+
+
+def _verify(options):
+    from .verify import verify
+    return verify(options)
+
+
+def _inspect(options):
+    from .inspect import inspect
+    inspect(options.file)
+
+
+def _done(report, output):
+    for line in report:
+        print(line)
+    print(f"{output}: {os.path.getsize(output):,} bytes")
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,473 @@
+// Declaring ops: every method checks the shapes it is given and appends one node.
+#include "engine/graph.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace gestus {
+namespace {
+
+std::int64_t BatchOf(const Shape& s) { return s.rank() == 3 ? s[0] : 1; }
+std::int64_t RowsOf(const Shape& s) { return s.rank() >= 2 ? s[s.rank() - 2] : 1; }
+
+Shape WithCols(const Shape& s, std::int64_t cols) {
+  return s.rank() == 3 ? Shape{s[0], s[1], cols} : Shape{RowsOf(s), cols};
+}
+
+Shape WithRows(const Shape& s, std::int64_t rows) {
+  return s.rank() == 3 ? Shape{s[0], rows, s[2]} : Shape{rows, s.Cols()};
+}
+
+}  // namespace
+
+const char* Name(Op op) {
+  switch (op) {
+    case Op::kLinear:
+      return "linear";
+    case Op::kAttention:
+      return "attention";
+    case Op::kLstm:
+      return "lstm";
+    case Op::kLayerNorm:
+      return "layer_norm";
+    case Op::kSoftmax:
+      return "softmax";
+    case Op::kActivate:
+      return "activate";
+    case Op::kAdd:
+      return "add";
+    case Op::kAffine:
+      return "affine";
+    case Op::kConcat:
+      return "concat";
+    case Op::kConcatRows:
+      return "concat_rows";
+    case Op::kRepeatRows:
+      return "repeat_rows";
+    case Op::kMeanRows:
+      return "mean_rows";
+    case Op::kGather:
+      return "gather";
+    case Op::kPatches:
+      return "patches";
+    case Op::kPadRows:
+      return "pad_rows";
+    case Op::kStoreRow:
+      return "store_row";
+    case Op::kStepRow:
+      return "step_row";
+    case Op::kPreviousRow:
+      return "previous_row";
+  }
+  return "unknown";
+}
+
+Graph::Scope::Scope(Graph& g, const std::string& name) : g_(g), length_(g.scope_.size()) {
+  if (!g.scope_.empty()) g.scope_ += '/';
+  g.scope_ += name;
+}
+
+void Graph::Fail(const std::string& message) {
+  if (!status_.ok()) return;
+  status_ = Status(Code::kBadWeights, scope_.empty() ? message : scope_ + ": " + message);
+}
+
+bool Graph::Expect(bool holds, const std::string& message) {
+  if (!holds) Fail(message);
+  return status_.ok();
+}
+
+const Shape& Graph::shape(Value x) const {
+  static const Shape kNone;
+  return Bad(x) ? kNone : info(x).shape;
+}
+
+bool Graph::Bad(Value x) const {
+  return !status_.ok() || x.id < 0 || static_cast<std::size_t>(x.id) >= values_.size();
+}
+
+Value Graph::NewValue(Shape shape, DType dtype) {
+  ValueInfo v;
+  v.dtype = dtype;
+  v.shape = shape;
+  v.row_stride = shape.Cols();
+  v.batch_stride = shape.Cols() * RowsOf(shape);
+  values_.push_back(v);
+  return Value{static_cast<int>(values_.size()) - 1};
+}
+
+Value Graph::View(Value x, Shape shape, std::ptrdiff_t offset, std::ptrdiff_t row_stride,
+                  std::ptrdiff_t batch_stride) {
+  ValueInfo v = info(x);
+  v.base = v.base < 0 ? x.id : v.base;
+  v.offset += offset;
+  v.shape = shape;
+  v.row_stride = row_stride;
+  v.batch_stride = batch_stride;
+  v.input = v.buffer = false;
+  values_.push_back(v);
+  return Value{static_cast<int>(values_.size()) - 1};
+}
+
+Node Graph::NewNode(Op op, std::vector<int> inputs) const {
+  Node node{};
+  node.op = op;
+  node.inputs = std::move(inputs);
+  node.scope = scope_;
+  node.loop = loop_;
+  return node;
+}
+
+Value Graph::Emit(Node node, Shape shape) {
+  const Value out = NewValue(shape);
+  node.output = out.id;
+  nodes_.push_back(std::move(node));
+  return out;
+}
+
+float* Graph::Own(std::size_t floats) {
+  auto buffer = std::make_shared<AlignedBuffer>(floats * sizeof(float));
+  if (buffer->data() == nullptr) {
+    Fail("no memory for " + std::to_string(floats) + " constants");
+    return nullptr;
+  }
+  owned_.push_back(buffer);
+  return buffer->f32();
+}
+
+Value Graph::OwnedConstant(float* data, Shape shape) {
+  if (data == nullptr) return {};
+  return Constant(TensorView{DType::kF32, shape, data});
+}
+
+Value Graph::Input(const std::string& name, Shape shape, DType dtype) {
+  if (!status_.ok()) return {};
+  const Value v = NewValue(shape, dtype);
+  values_.back().input = true;
+  inputs_.push_back({name, v.id});
+  return v;
+}
+
+Value Graph::Constant(const TensorView& view) {
+  if (!status_.ok()) return {};
+  const Value v = NewValue(view.shape, view.dtype);
+  values_.back().constant = view.data;
+  return v;
+}
+
+Value Graph::Zeros(Shape shape) {
+  if (!status_.ok()) return {};
+  return OwnedConstant(Own(static_cast<std::size_t>(shape.NumElements())), shape);
+}
+
+Value Graph::Positions(std::int64_t length, std::int64_t d) {
+  if (!status_.ok()) return {};
+  float* data = Own(static_cast<std::size_t>(length * d));
+  if (data != nullptr)
+    kernels::sinusoidal_positions(data, static_cast<std::size_t>(length),
+                                  static_cast<std::size_t>(d));
+  return OwnedConstant(data, {length, d});
+}
+
+Value Graph::Linear(Value x, const LinearWeights& w, Activation act, float alpha) {
+  if (Bad(x)) return {};
+  if (!Expect(w.weight.shape.rank() == 2 && shape(x).Cols() == w.weight.shape[1],
+              "linear: input is " + shape(x).ToString() + " and weight " +
+                  w.weight.shape.ToString() +
+                  ", expected (out, in) with in = columns of the input"))
+    return {};
+  Node node = NewNode(Op::kLinear, {x.id});
+  node.weight = w.weight;
+  node.bias = w.bias;
+  node.act = act;
+  node.alpha = alpha;
+  return Emit(std::move(node), WithCols(shape(x), w.weight.shape[0]));
+}
+
+Value Graph::Attention(Value q, Value k, Value v, const AttentionOptions& o) {
+  if (Bad(q) || Bad(k) || Bad(v)) return {};
+  const Shape &sq = shape(q), &sk = shape(k), &sv = shape(v);
+  if (!Expect(o.heads > 0 && sq.Cols() == sk.Cols() && RowsOf(sk) == RowsOf(sv) &&
+                  BatchOf(sq) == BatchOf(sk) && BatchOf(sk) == BatchOf(sv),
+              "attention: q " + sq.ToString() + ", k " + sk.ToString() + ", v " + sv.ToString() +
+                  " do not fit each other") ||
+      !Expect(sq.Cols() % o.heads == 0 && sv.Cols() % o.heads == 0,
+              "attention: " + std::to_string(o.heads) + " heads do not divide the widths " +
+                  std::to_string(sq.Cols()) + " and " + std::to_string(sv.Cols())) ||
+      !Expect(o.key_bias.id < 0 || shape(o.key_bias).NumElements() == RowsOf(sk),
+              "attention: key mask does not have one value for each key") ||
+      !Expect(!o.by_step || (loop_ >= 0 && RowsOf(sq) == 1),
+              "attention: by_step needs a loop and one query row"))
+    return {};
+  Node node = NewNode(Op::kAttention, {q.id, k.id, v.id});
+  if (o.key_bias.id >= 0) node.inputs.push_back(o.key_bias.id);
+  node.heads = o.heads;
+  node.causal = o.causal;
+  node.by_step = o.by_step;
+  node.scale = o.scale != 0.0f
+                   ? o.scale
+                   : 1.0f / std::sqrt(static_cast<float>(sq.Cols()) / static_cast<float>(o.heads));
+  return Emit(std::move(node), WithCols(sq, sv.Cols()));
+}
+
+Value Graph::Lstm(Value x, const LstmWeights& w, bool reverse) {
+  if (Bad(x)) return {};
+  const Shape& hh = w.w_hh.shape;
+  if (!Expect(hh.rank() == 2 && hh[0] == 4 * hh[1] && w.w_ih.shape.rank() == 2 &&
+                  w.w_ih.shape[0] == hh[0],
+              "lstm: weights " + w.w_ih.shape.ToString() + " and " + hh.ToString() +
+                  ", expected (4H, in) and (4H, H)"))
+    return {};
+  const auto gates = static_cast<std::size_t>(hh[0]);
+  float* bias = Own(gates);
+  if (bias == nullptr) return {};
+  for (const TensorView* b : {&w.b_ih, &w.b_hh}) {
+    if (b->data == nullptr) continue;
+    for (std::size_t i = 0; i < gates; ++i) bias[i] += b->f32()[i];
+  }
+  const Value proj = Linear(x, {w.w_ih, {DType::kF32, {hh[0]}, bias}});
+  if (Bad(proj)) return {};
+  Node node = NewNode(Op::kLstm, {proj.id});
+  node.weight = w.w_hh;
+  node.layout = PackLayout::kRecurrent;
+  node.reverse = reverse;
+  return Emit(std::move(node), WithCols(shape(x), hh[1]));
+}
+
+Value Graph::Conv1d(Value x, const LinearWeights& w, std::int64_t stride, std::int64_t pad_before,
+                    std::int64_t pad_after, Activation act) {
+  if (Bad(x)) return {};
+  const Shape sx = shape(x), &sw = w.weight.shape;
+  const std::int64_t rows = RowsOf(sx) + pad_before + pad_after;
+  if (!Expect(sw.rank() == 3 && sw[1] == sx.Cols() && stride > 0 && pad_before >= 0 &&
+                  pad_after >= 0 && rows >= sw[2],
+              "conv1d: input " + sx.ToString() + " and weight " + sw.ToString() +
+                  ", expected (C_out, C_in, k) with C_in = columns of the input and k at most the "
+                  "padded rows"))
+    return {};
+  Node pad = NewNode(Op::kPadRows, {x.id});
+  pad.before = pad_before;
+  const Value padded = Emit(std::move(pad), WithRows(sx, rows));
+  // Row t' of the window view is rows t' * stride to t' * stride + k - 1 of the padded sequence.
+  const std::int64_t windows = (rows - sw[2]) / stride + 1;
+  const Value view = View(padded, WithCols(WithRows(sx, windows), sw[2] * sw[1]), 0,
+                          stride * sx.Cols(), rows * sx.Cols());
+  Node node = NewNode(Op::kLinear, {view.id});
+  node.weight = w.weight;
+  node.bias = w.bias;
+  node.layout = PackLayout::kConv1d;
+  node.act = act;
+  return Emit(std::move(node), WithCols(shape(view), sw[0]));
+}
+
+Value Graph::Patches(Value x, const PatchOptions& o) {
+  if (Bad(x)) return {};
+  const Shape& s = shape(x);
+  if (!Expect(s.rank() == 2 && o.patch > 0 && o.stride > 0 && s[0] >= o.patch && s[1] >= o.patch,
+              "patches: input " + s.ToString() + " is smaller than a patch of edge " +
+                  std::to_string(o.patch)))
+    return {};
+  Node node = NewNode(Op::kPatches, {x.id});
+  node.patches = o;
+  const std::int64_t along_t = (s[0] - o.patch) / o.stride + 1;
+  const std::int64_t along_f = (s[1] - o.patch) / o.stride + 1;
+  return Emit(std::move(node), {along_f * along_t, o.patch * o.patch});
+}
+
+Value Graph::LayerNorm(Value x, const NormWeights& w) {
+  if (Bad(x)) return {};
+  if (!Expect(w.gamma.shape.NumElements() == shape(x).Cols() && w.gamma.shape == w.beta.shape,
+              "layer_norm: input " + shape(x).ToString() + ", weight " + w.gamma.shape.ToString()))
+    return {};
+  Node node = NewNode(Op::kLayerNorm, {x.id});
+  node.weight = w.gamma;
+  node.bias = w.beta;
+  node.eps = w.eps;
+  return Emit(std::move(node), shape(x));
+}
+
+Value Graph::Softmax(Value x) {
+  if (Bad(x)) return {};
+  return Emit(NewNode(Op::kSoftmax, {x.id}), shape(x));
+}
+
+Value Graph::Activate(Value x, Activation act, float alpha) {
+  if (Bad(x)) return {};
+  Node node = NewNode(Op::kActivate, {x.id});
+  node.act = act;
+  node.alpha = alpha;
+  return Emit(std::move(node), shape(x));
+}
+
+Value Graph::Add(Value a, Value b) {
+  if (Bad(a) || Bad(b)) return {};
+  const Shape sa = shape(a), sb = shape(b);
+  if (!Expect(sa == sb || (sb.Rows() == 1 && sb.Cols() == sa.Cols()),
+              "add: " + sa.ToString() + " and " + sb.ToString() + " do not fit each other"))
+    return {};
+  return Emit(NewNode(Op::kAdd, {a.id, b.id}), sa);
+}
+
+Value Graph::Affine(Value x, const std::vector<float>& scale, const std::vector<float>& shift) {
+  if (Bad(x)) return {};
+  const std::int64_t cols = shape(x).Cols();
+  const auto n = static_cast<std::size_t>(cols);
+  if (!Expect(scale.size() == n && shift.size() == n,
+              "affine: " + std::to_string(scale.size()) + " factors for " + shape(x).ToString()))
+    return {};
+  float* owned = Own(2 * n);
+  if (owned == nullptr) return {};
+  std::copy(scale.begin(), scale.end(), owned);
+  std::copy(shift.begin(), shift.end(), owned + n);
+  Node node = NewNode(Op::kAffine, {x.id});
+  node.weight = {DType::kF32, {cols}, owned};
+  node.bias = {DType::kF32, {cols}, owned + n};
+  return Emit(std::move(node), shape(x));
+}
+
+Value Graph::Concat(const std::vector<Value>& parts) {
+  std::int64_t cols = 0;
+  Node node = NewNode(Op::kConcat, {});
+  for (Value p : parts) {
+    if (Bad(p)) return {};
+    if (!Expect(WithCols(shape(p), 1) == WithCols(shape(parts[0]), 1),
+                "concat: " + shape(p).ToString() + " and " + shape(parts[0]).ToString() +
+                    " differ in rows"))
+      return {};
+    node.inputs.push_back(p.id);
+    cols += shape(p).Cols();
+  }
+  if (!Expect(!parts.empty(), "concat: nothing to put together")) return {};
+  return Emit(std::move(node), WithCols(shape(parts[0]), cols));
+}
+
+Value Graph::ConcatRows(const std::vector<Value>& parts) {
+  std::int64_t rows = 0;
+  Node node = NewNode(Op::kConcatRows, {});
+  for (Value p : parts) {
+    if (Bad(p)) return {};
+    if (!Expect(BatchOf(shape(p)) == 1 && shape(p).Cols() == shape(parts[0]).Cols(),
+                "concat_rows: " + shape(p).ToString() + " and " + shape(parts[0]).ToString() +
+                    " differ in columns"))
+      return {};
+    node.inputs.push_back(p.id);
+    rows += RowsOf(shape(p));
+  }
+  if (!Expect(!parts.empty(), "concat_rows: nothing to put together")) return {};
+  return Emit(std::move(node), {rows, shape(parts[0]).Cols()});
+}
+
+Value Graph::RepeatRows(Value row, std::int64_t count) {
+  if (Bad(row)) return {};
+  if (!Expect(shape(row).Rows() == 1 && count > 0,
+              "repeat_rows: input " + shape(row).ToString() + ", expected one row"))
+    return {};
+  if (count == 1) return row;
+  return Emit(NewNode(Op::kRepeatRows, {row.id}), {count, shape(row).Cols()});
+}
+
+Value Graph::MeanRows(Value x) {
+  if (Bad(x)) return {};
+  if (!Expect(BatchOf(shape(x)) == 1, "mean_rows: expected a matrix")) return {};
+  return Emit(NewNode(Op::kMeanRows, {x.id}), {1, shape(x).Cols()});
+}
+
+Value Graph::Embedding(Value ids, const TensorView& table, float scale) {
+  if (Bad(ids)) return {};
+  if (!Expect(info(ids).dtype == DType::kI32 && table.shape.rank() == 2,
+              "embedding: expected int32 ids and a table (V, D)"))
+    return {};
+  Node node = NewNode(Op::kGather, {ids.id});
+  node.weight = table;
+  node.scale = scale;
+  return Emit(std::move(node), {shape(ids).NumElements(), table.shape[1]});
+}
+
+Value Graph::Rows(Value x, std::int64_t begin, std::int64_t count) {
+  if (Bad(x)) return {};
+  const ValueInfo v = info(x);
+  if (!Expect(BatchOf(v.shape) == 1 && begin >= 0 && count > 0 && begin + count <= RowsOf(v.shape),
+              "rows: " + std::to_string(begin) + " + " + std::to_string(count) + " of " +
+                  v.shape.ToString()))
+    return {};
+  return View(x, {count, v.shape.Cols()}, begin * v.row_stride, v.row_stride, count * v.row_stride);
+}
+
+Value Graph::Columns(Value x, std::int64_t begin, std::int64_t count) {
+  if (Bad(x)) return {};
+  const ValueInfo v = info(x);
+  if (!Expect(begin >= 0 && count > 0 && begin + count <= v.shape.Cols(),
+              "columns: " + std::to_string(begin) + " + " + std::to_string(count) + " of " +
+                  v.shape.ToString()))
+    return {};
+  return View(x, WithCols(v.shape, count), begin, v.row_stride, v.batch_stride);
+}
+
+Value Graph::Reshape(Value x, Shape to) {
+  if (Bad(x)) return {};
+  const ValueInfo v = info(x);
+  const bool contiguous =
+      (v.row_stride == v.shape.Cols() || RowsOf(v.shape) == 1) &&
+      (BatchOf(v.shape) == 1 || v.batch_stride == v.shape.Cols() * RowsOf(v.shape));
+  if (!Expect(contiguous && to.NumElements() == v.shape.NumElements(),
+              "reshape: " + v.shape.ToString() + " to " + to.ToString()))
+    return {};
+  return View(x, to, 0, to.Cols(), to.Cols() * RowsOf(to));
+}
+
+void Graph::BeginLoop(std::int64_t count) {
+  if (!Expect(loop_ < 0 && count > 0, "loop: loops do not nest and run at least once")) return;
+  loop_ = static_cast<int>(loops_.size());
+  loops_.push_back({nodes_.size(), nodes_.size(), count});
+}
+
+void Graph::EndLoop() {
+  if (!status_.ok() || !Expect(loop_ >= 0, "loop: ended before it began")) return;
+  loops_[static_cast<std::size_t>(loop_)].end = nodes_.size();
+  loop_ = -1;
+}
+
+Value Graph::Buffer(Shape shape) {
+  if (!status_.ok() || !Expect(loop_ < 0, "buffer: declare it before the loop")) return {};
+  const Value v = NewValue(shape);
+  values_.back().buffer = true;
+  return v;
+}
+
+void Graph::StoreRow(Value buffer, Value row) {
+  if (Bad(buffer) || Bad(row)) return;
+  if (!Expect(info(buffer).buffer && loop_ >= 0 && shape(row).Rows() == 1 &&
+                  shape(row).Cols() == shape(buffer).Cols() &&
+                  shape(buffer).Rows() >= loops_[static_cast<std::size_t>(loop_)].count,
+              "store_row: row " + shape(row).ToString() + " into " + shape(buffer).ToString()))
+    return;
+  Node node = NewNode(Op::kStoreRow, {row.id});
+  node.output = buffer.id;
+  nodes_.push_back(std::move(node));
+}
+
+Value Graph::StepRow(Value x) {
+  if (Bad(x)) return {};
+  if (!Expect(loop_ >= 0 && shape(x).Rows() >= loops_[static_cast<std::size_t>(loop_)].count,
+              "step_row: " + shape(x).ToString() + " has fewer rows than the loop has steps"))
+    return {};
+  return Emit(NewNode(Op::kStepRow, {x.id}), {1, shape(x).Cols()});
+}
+
+Value Graph::PreviousRow(Value buffer) {
+  if (Bad(buffer)) return {};
+  if (!Expect(loop_ >= 0 && info(buffer).buffer, "previous_row: expected a buffer in a loop"))
+    return {};
+  return Emit(NewNode(Op::kPreviousRow, {buffer.id}), {1, shape(buffer).Cols()});
+}
+
+void Graph::Output(const std::string& name, Value x) {
+  if (!Bad(x)) outputs_.push_back({name, x.id});
+}
+
+void Graph::Tap(const std::string& name, Value x) {
+  if (!Bad(x)) taps_.push_back({scope_.empty() ? name : scope_ + '/' + name, x.id});
+}
+
+}  // namespace gestus

@@ -1,0 +1,90 @@
+// The one place that knows every op: its family, its scratch, its work.
+#include "engine/ops/bind.h"
+
+namespace gestus {
+namespace {
+
+const Shape& ShapeOf(int id, const std::vector<ValueInfo>& values) {
+  return values[static_cast<std::size_t>(id)].shape;
+}
+
+double Elements(int id, const std::vector<ValueInfo>& values) {
+  return static_cast<double>(ShapeOf(id, values).NumElements());
+}
+
+}  // namespace
+
+bool NeedsPacking(const Node& node) { return node.op == Op::kLinear || node.op == Op::kLstm; }
+
+std::size_t WorkerScratch(const Node& node, const std::vector<ValueInfo>& values,
+                          const kernels::KernelTable& kernels) {
+  return node.op == Op::kAttention ? AttentionScratch(node, values, kernels) : 0;
+}
+
+std::size_t SharedScratch(const Node& node, const std::vector<ValueInfo>& values) {
+  // The cell state, and the hidden state before the first step.
+  return node.op == Op::kLstm ? 2 * static_cast<std::size_t>(ShapeOf(node.output, values).Cols())
+                              : 0;
+}
+
+OpCost CostOf(const Node& node, const std::vector<ValueInfo>& values) {
+  const double out = Elements(node.output, values);
+  const double weights = node.weight.data != nullptr && node.op != Op::kGather
+                             ? static_cast<double>(node.weight.shape.NumElements())
+                             : 0;
+  OpCost cost;
+  cost.bytes = 4 * (out + weights);
+  for (int in : node.inputs) cost.bytes += 4 * Elements(in, values);
+  switch (node.op) {
+    case Op::kLinear: {
+      const double k = weights / static_cast<double>(node.weight.shape[0]);
+      cost.flops = 2 * out * k;
+      break;
+    }
+    case Op::kLstm:
+      cost.flops = 2 * out * static_cast<double>(node.weight.shape[0]);
+      break;
+    case Op::kAttention: {
+      // Scores and weighted sum; a causal row sees half of the keys on average.
+      const Shape& k = ShapeOf(node.inputs[1], values);
+      const double keys = static_cast<double>(k[k.rank() - 2]);
+      const double q = Elements(node.inputs[0], values);
+      cost.flops = 2 * (q + out) * keys * (node.causal || node.by_step ? 0.5 : 1.0);
+      break;
+    }
+    default:
+      cost.flops = out;
+  }
+  return cost;
+}
+
+std::unique_ptr<BoundOp> Bind(const Binding& b) {
+  switch (b.node->op) {
+    case Op::kLinear:
+      return BindLinear(b);
+    case Op::kAttention:
+      return BindAttention(b);
+    case Op::kLstm:
+      return BindLstm(b);
+    case Op::kLayerNorm:
+    case Op::kSoftmax:
+    case Op::kActivate:
+    case Op::kAdd:
+    case Op::kAffine:
+      return BindRowwise(b);
+    case Op::kConcat:
+    case Op::kConcatRows:
+    case Op::kRepeatRows:
+    case Op::kMeanRows:
+    case Op::kGather:
+    case Op::kPatches:
+    case Op::kPadRows:
+    case Op::kStoreRow:
+    case Op::kStepRow:
+    case Op::kPreviousRow:
+      return BindMove(b);
+  }
+  return nullptr;
+}
+
+}  // namespace gestus

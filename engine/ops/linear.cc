@@ -1,0 +1,84 @@
+// Matrix products with packed weights: one GEMM for each matrix of a batch (one for all when their
+// rows are evenly spaced), a GEMV for a single row.
+#include "engine/ops/bind.h"
+
+namespace gestus {
+namespace {
+
+class LinearOp final : public BoundOp {
+ public:
+  explicit LinearOp(const Binding& b) : kernels_(*b.kernels) {
+    const Ref& x = b.in[0];
+    const Ref* residual = b.node->residual ? &b.in[1] : nullptr;
+    const bool merge = x.tall() && b.out.tall() &&
+                       (residual == nullptr || residual->rows == 1 || residual->tall());
+    batch_ = merge ? 1 : x.batch;
+    args_.m = merge ? x.batch * x.rows : x.rows;
+    args_.n = b.out.cols;
+    args_.k = x.cols;
+    args_.out = b.out.f32;
+    args_.out_stride = b.out.row_stride;
+    args_.a = x.f32;
+    args_.a_stride = x.row_stride;
+    args_.packed = b.packed;
+    args_.epilogue.bias = b.node->bias.f32();
+    args_.epilogue.act = b.node->act;
+    args_.epilogue.alpha = b.node->alpha;
+    if (residual != nullptr) {
+      args_.epilogue.residual = residual->f32;
+      args_.epilogue.residual_stride = residual->rows == 1 ? 0 : residual->row_stride;
+      residual_batch_stride_ = residual->rows == 1 ? 0 : residual->batch_stride;
+    }
+    a_batch_stride_ = x.batch_stride;
+    out_batch_stride_ = b.out.batch_stride;
+  }
+
+  void Run(const Worker& worker) const noexcept override {
+    for (std::size_t i = 0; i < batch_; ++i) {
+      const auto b = static_cast<std::ptrdiff_t>(i);
+      kernels::GemmArgs args = args_;
+      args.a += b * a_batch_stride_;
+      args.out += b * out_batch_stride_;
+      if (args.epilogue.residual != nullptr) args.epilogue.residual += b * residual_batch_stride_;
+      RunOne(args, worker);
+    }
+  }
+
+ private:
+  // Wide outputs are divided by columns, so that each worker streams its own weights; tall and
+  // narrow ones by rows.
+  void RunOne(kernels::GemmArgs args, const Worker& worker) const {
+    const auto count = static_cast<std::size_t>(worker.count);
+    const std::size_t panels = (args.n + kernels_.gemm_block_n - 1) / kernels_.gemm_block_n;
+    if (panels >= 2 * count || args.m < 8 * count) {
+      const Worker::Range cols = worker.Part(args.n, kernels_.gemm_block_n);
+      if (cols.empty()) return;
+      args.n_begin = cols.begin;
+      args.n_end = cols.end;
+      (args.m == 1 ? kernels_.f32_gemv : kernels_.f32_gemm)(args);
+      return;
+    }
+    const Worker::Range rows = worker.Part(args.m);
+    if (rows.empty()) return;
+    const auto first = static_cast<std::ptrdiff_t>(rows.begin);
+    args.m = rows.end - rows.begin;
+    args.a += first * args.a_stride;
+    args.out += first * args.out_stride;
+    if (args.epilogue.residual != nullptr)
+      args.epilogue.residual += first * args.epilogue.residual_stride;
+    args.n_begin = 0;
+    args.n_end = args.n;
+    kernels_.f32_gemm(args);
+  }
+
+  const kernels::KernelTable& kernels_;
+  std::size_t batch_;
+  kernels::GemmArgs args_;
+  std::ptrdiff_t a_batch_stride_ = 0, out_batch_stride_ = 0, residual_batch_stride_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<BoundOp> BindLinear(const Binding& b) { return std::make_unique<LinearOp>(b); }
+
+}  // namespace gestus

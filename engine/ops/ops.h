@@ -1,0 +1,62 @@
+// What the planner and the session ask of an op: does it pack weights, how much scratch, how much
+// work, and a version of it that is bound to pointers and ready to run.
+#ifndef GESTUS_ENGINE_OPS_OPS_H_
+#define GESTUS_ENGINE_OPS_OPS_H_
+
+#include <memory>
+#include <vector>
+
+#include "engine/graph.h"
+#include "engine/plan.h"
+#include "engine/thread_pool.h"
+
+namespace gestus {
+
+/// A value in memory: `batch` matrices of rows x cols.
+struct Ref {
+  float* f32 = nullptr;
+  std::size_t batch = 1, rows = 0, cols = 0;
+  std::ptrdiff_t row_stride = 0, batch_stride = 0;
+
+  const std::int32_t* i32() const { return reinterpret_cast<const std::int32_t*>(f32); }
+  float* at(std::size_t b, std::size_t row) const {
+    return f32 + static_cast<std::ptrdiff_t>(b) * batch_stride +
+           static_cast<std::ptrdiff_t>(row) * row_stride;
+  }
+  /// True when all rows of all matrices lie at one distance, so that they are one tall matrix.
+  bool tall() const {
+    return batch == 1 || batch_stride == static_cast<std::ptrdiff_t>(rows) * row_stride;
+  }
+};
+
+/// An op with everything resolved.  Run computes this worker's part and must not return before its
+/// own reads of shared scratch are over; the session lets workers meet between ops.
+class BoundOp {
+ public:
+  virtual ~BoundOp() = default;
+  virtual void Run(const Worker& worker) const noexcept = 0;
+};
+
+struct Binding {
+  const kernels::KernelTable* kernels;
+  const Node* node;
+  std::vector<Ref> in;
+  Ref out;
+  const float* packed = nullptr;
+  float* shared_scratch = nullptr;
+  float* worker_scratch = nullptr;        ///< of worker 0
+  std::size_t worker_scratch_stride = 0;  ///< floats between workers
+};
+
+bool NeedsPacking(const Node& node);
+/// Floats that one worker needs while the op runs.
+std::size_t WorkerScratch(const Node& node, const std::vector<ValueInfo>& values,
+                          const kernels::KernelTable& kernels);
+/// Floats that all workers share while the op runs.
+std::size_t SharedScratch(const Node& node, const std::vector<ValueInfo>& values);
+OpCost CostOf(const Node& node, const std::vector<ValueInfo>& values);
+std::unique_ptr<BoundOp> Bind(const Binding& binding);
+
+}  // namespace gestus
+
+#endif  // GESTUS_ENGINE_OPS_OPS_H_

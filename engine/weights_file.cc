@@ -1,0 +1,337 @@
+// Opens a weights file in the order that docs/format.md gives: each step relies only on what the
+// steps before it have proven.
+#include "engine/weights_file.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "weights_generated.h"
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
+namespace gestus {
+namespace {
+
+constexpr std::uint64_t kAlign = 64;
+constexpr std::uint64_t kHeaderSize = 64;
+constexpr std::uint64_t kMinFileSize = kHeaderSize + kAlign;
+constexpr std::uint64_t kMaxFileSize = std::uint64_t{1} << 36;
+constexpr std::uint64_t kMaxMetadataSize = std::uint64_t{64} << 20;
+constexpr std::uint32_t kFormatVersion = 1;
+constexpr std::uint32_t kEndianMark = 0x01020304;
+constexpr char kMagic[8] = {'G', 'E', 'S', 'T', 'U', 'S', 'W', '\0'};
+constexpr std::size_t kChecksumOffset = 56;
+constexpr std::size_t kMaxNameLength = 255;
+constexpr std::int64_t kMaxDim = std::int64_t{1} << 24;
+constexpr int kMaxDepth = 8;
+constexpr int kMaxTables = 1 << 16;
+
+static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "weights files are little endian");
+
+struct Header {
+  char magic[8];
+  std::uint32_t format_version;
+  std::uint32_t endian_mark;
+  std::uint64_t file_size;
+  std::uint64_t metadata_size;
+  std::uint64_t data_size;
+  std::uint8_t reserved[16];
+  std::uint64_t checksum;
+};
+static_assert(sizeof(Header) == kHeaderSize);
+
+Header ReadHeader(const std::uint8_t* base) {
+  Header h;
+  std::memcpy(&h, base, sizeof h);
+  return h;
+}
+
+std::uint64_t AlignUp(std::uint64_t n) { return (n + kAlign - 1) / kAlign * kAlign; }
+
+Status Bad(std::string message) { return Status(Code::kBadWeights, std::move(message)); }
+
+/// XXH3-64 of the file with its checksum field taken as zero.
+std::uint64_t Checksum(const std::uint8_t* base, std::uint64_t size) {
+  std::uint8_t header[kHeaderSize];
+  std::memcpy(header, base, kHeaderSize);
+  std::memset(header + kChecksumOffset, 0, sizeof(std::uint64_t));
+  alignas(64) XXH3_state_t state;
+  XXH3_64bits_reset(&state);
+  XXH3_64bits_update(&state, header, kHeaderSize);
+  XXH3_64bits_update(&state, base + kHeaderSize, size - kHeaderSize);
+  return XXH3_64bits_digest(&state);
+}
+
+Status CheckHeader(const Header& h, std::uint64_t size) {
+  if (std::memcmp(h.magic, kMagic, sizeof kMagic) != 0)
+    return Bad("header: no gestus weights file, expected it to begin with GESTUSW");
+  if (h.endian_mark != kEndianMark) return Bad("header: byte order mark is damaged");
+  if (h.format_version == 0 || h.format_version > kFormatVersion)
+    return Bad("header: format version " + std::to_string(h.format_version) +
+               ", expected at most " + std::to_string(kFormatVersion) + " (use a newer gestus)");
+  if (h.file_size != size)
+    return Bad("header: file has " + std::to_string(size) + " bytes, expected " +
+               std::to_string(h.file_size) + " (truncated or still being written?)");
+  for (std::uint8_t byte : h.reserved) {
+    if (byte != 0) return Bad("header: reserved bytes are not zero");
+  }
+  if (h.metadata_size < 16 || h.metadata_size > kMaxMetadataSize ||
+      h.metadata_size > size - kHeaderSize)
+    return Bad("header: metadata size " + std::to_string(h.metadata_size) + " is out of range");
+  const std::uint64_t data_offset = AlignUp(kHeaderSize + h.metadata_size);
+  if (data_offset > size || h.data_size != size - data_offset || h.data_size % kAlign != 0 ||
+      h.data_size < kAlign)
+    return Bad("header: data size " + std::to_string(h.data_size) +
+               " does not fit the file's size");
+  return {};
+}
+
+bool PrintableName(std::string_view name) {
+  if (name.empty() || name.size() > kMaxNameLength) return false;
+  return std::all_of(name.begin(), name.end(), [](char c) {
+    const auto u = static_cast<unsigned char>(c);
+    return u >= 0x20 && u < 0x7f;
+  });
+}
+
+bool Convert(fb::DType from, DType* to) {
+  switch (from) {
+    case fb::DType::F32:
+      *to = DType::kF32;
+      return true;
+    case fb::DType::I32:
+      *to = DType::kI32;
+      return true;
+    case fb::DType::U8:
+      *to = DType::kU8;
+      return true;
+    default:
+      return false;
+  }
+}
+
+bool AllFinite(const float* x, std::size_t n) {
+  constexpr std::uint32_t kExponent = 0x7f800000u;
+  std::uint32_t worst = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    std::uint32_t bits;
+    std::memcpy(&bits, x + i, sizeof bits);
+    const std::uint32_t exponent = bits & kExponent;
+    worst = worst > exponent ? worst : exponent;
+  }
+  return worst != kExponent;
+}
+
+/// Checks one tensor record and makes its view; `end` is where the previous payload ended.
+Status CheckTensor(const fb::Tensor& t, std::size_t index, const std::uint8_t* data,
+                   std::uint64_t data_size, std::uint64_t* end, WeightsFile::Entry* entry) {
+  const std::string_view name = t.name()->string_view();
+  if (!PrintableName(name))
+    return Bad("tensor number " + std::to_string(index) +
+               ": name is empty, longer than 255 bytes or not printable");
+  entry->name = name;
+  const std::string where = "tensor " + entry->name + ": ";
+  if (!Convert(t.dtype(), &entry->view.dtype))
+    return Bad(where + "dtype " + std::to_string(static_cast<int>(t.dtype())) +
+               ", expected one that this version reads (F32, I32, U8)");
+  std::uint64_t elements = 1;
+  const std::size_t rank = t.shape() == nullptr ? 0 : t.shape()->size();
+  if (rank > Shape::kMaxRank)
+    return Bad(where + "rank " + std::to_string(rank) + ", expected at most 4");
+  for (flatbuffers::uoffset_t i = 0; i < rank; ++i) {
+    const std::uint32_t dim = t.shape()->Get(i);
+    if (dim == 0 || dim > kMaxDim)
+      return Bad(where + "dimension " + std::to_string(i) + " is " + std::to_string(dim) +
+                 ", expected 1 to 2^24");
+    if (elements > kMaxFileSize / dim) return Bad(where + "shape overflows");
+    elements *= dim;
+    entry->view.shape.Append(dim);
+  }
+  const std::uint64_t bytes = elements * SizeOf(entry->view.dtype);
+  if (t.bytes() != bytes)
+    return Bad(where + std::to_string(t.bytes()) + " bytes, expected " + std::to_string(bytes) +
+               " for shape " + entry->view.shape.ToString());
+  if (t.offset() % kAlign != 0)
+    return Bad(where + "offset " + std::to_string(t.offset()) + ", expected a multiple of 64");
+  if (t.offset() < *end) return Bad(where + "payload overlaps the one before it");
+  // The last 64 bytes of the region are padding that kernels may read past the last tensor.
+  if (bytes > data_size - kAlign || t.offset() > data_size - kAlign - bytes)
+    return Bad(where + "payload ends outside the data region");
+  *end = AlignUp(t.offset() + bytes);
+  entry->bytes = bytes;
+  entry->view.data = data + t.offset();
+  if (entry->view.dtype == DType::kF32 && !AllFinite(entry->view.f32(), elements))
+    return Bad(where + "holds NaN or infinity, expected finite weights");
+  return {};
+}
+
+Status CheckNetworks(const fb::WeightsFile& root) {
+  std::vector<std::string_view> names;
+  for (const fb::Network* n : *root.networks()) {
+    const std::string_view name = n->name()->string_view();
+    if (!PrintableName(name)) return Bad("a network's name is empty, too long or not printable");
+    if (n->config_type() == fb::Config::NONE || n->config() == nullptr)
+      return Bad("network " + std::string(name) + ": no configuration");
+    if (static_cast<std::uint8_t>(n->config_type()) > static_cast<std::uint8_t>(fb::Config::MAX))
+      return Bad("network " + std::string(name) + ": of a kind this version does not know");
+    names.push_back(name);
+  }
+  if (names.empty()) return Bad("networks: none in the file, expected at least one");
+  std::sort(names.begin(), names.end());
+  const auto twice = std::adjacent_find(names.begin(), names.end());
+  if (twice != names.end()) return Bad("network " + std::string(*twice) + ": name is used twice");
+  return {};
+}
+
+Status ErrnoStatus(const std::string& path, const char* what) {
+  return Status(errno == ENOENT ? Code::kNotFound : Code::kIo,
+                path + ": " + what + ": " + std::strerror(errno));
+}
+
+/// A file descriptor that closes itself.
+struct File {
+  int fd = -1;
+  ~File() {
+    if (fd >= 0) close(fd);
+  }
+};
+
+Status ReadAll(int fd, std::uint8_t* to, std::uint64_t size, const std::string& path) {
+  std::uint64_t done = 0;
+  while (done < size) {
+    const ssize_t n = pread(fd, to + done, size - done, static_cast<off_t>(done));
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) return ErrnoStatus(path, "cannot read");
+    if (n == 0) return Bad(path + ": file became shorter while it was read");
+    done += static_cast<std::uint64_t>(n);
+  }
+  return {};
+}
+
+}  // namespace
+
+WeightsFile::~WeightsFile() {
+  // Both kinds of residence are mappings, of the file or of anonymous memory.
+  if (base_ != nullptr) munmap(const_cast<std::uint8_t*>(base_), size_);
+}
+
+Result<std::shared_ptr<const WeightsFile>> WeightsFile::Open(const std::string& path,
+                                                             const LoadOptions& options) {
+  File file;
+  do {
+    file.fd = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  } while (file.fd < 0 && errno == EINTR);
+  if (file.fd < 0) return ErrnoStatus(path, "cannot open");
+  struct stat st;
+  if (fstat(file.fd, &st) != 0) return ErrnoStatus(path, "cannot stat");
+  if (!S_ISREG(st.st_mode)) return Bad(path + ": not a regular file");
+  const auto size = static_cast<std::uint64_t>(st.st_size);
+  if (size < kMinFileSize || size > kMaxFileSize)
+    return Bad(path + ": " + std::to_string(size) + " bytes, expected a weights file of " +
+               std::to_string(kMinFileSize) + " bytes to 64 GiB");
+
+  std::shared_ptr<WeightsFile> result(new WeightsFile);
+  result->path_ = path;
+  result->mapped_ = options.residence == Residence::kMapped;
+  void* base = result->mapped_ ? mmap(nullptr, size, PROT_READ, MAP_PRIVATE, file.fd, 0)
+                               : mmap(nullptr, size, PROT_READ | PROT_WRITE,
+                                      MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (base == MAP_FAILED) {
+    return Status(Code::kResourceExhausted, path + ": cannot map " + std::to_string(size) +
+                                                " bytes: " + std::strerror(errno));
+  }
+  result->base_ = static_cast<std::uint8_t*>(base);
+  result->size_ = size;
+  if (!result->mapped_)
+    GESTUS_RETURN_IF_ERROR(ReadAll(file.fd, static_cast<std::uint8_t*>(base), size, path));
+  GESTUS_RETURN_IF_ERROR(result->Check().In(path));
+  return std::shared_ptr<const WeightsFile>(std::move(result));
+}
+
+Result<std::shared_ptr<const WeightsFile>> WeightsFile::FromMemory(const void* data,
+                                                                   std::size_t size,
+                                                                   const std::string& name) {
+  if (data == nullptr || size < kMinFileSize)
+    return Bad(name + ": " + std::to_string(size) + " bytes, expected at least " +
+               std::to_string(kMinFileSize));
+  void* base = mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (base == MAP_FAILED)
+    return Status(Code::kResourceExhausted,
+                  name + ": cannot reserve " + std::to_string(size) + " bytes");
+  std::shared_ptr<WeightsFile> result(new WeightsFile);
+  result->path_ = name;
+  result->base_ = static_cast<std::uint8_t*>(base);
+  result->size_ = size;
+  std::memcpy(base, data, size);
+  GESTUS_RETURN_IF_ERROR(result->Check().In(name));
+  return std::shared_ptr<const WeightsFile>(std::move(result));
+}
+
+Status WeightsFile::Check() {
+  const Header header = ReadHeader(base_);
+  GESTUS_RETURN_IF_ERROR(CheckHeader(header, size_));
+  if (Checksum(base_, size_) != header.checksum)
+    return Bad("checksum: the content does not match it, the file is damaged");
+
+  const std::uint8_t* metadata = base_ + kHeaderSize;
+  flatbuffers::Verifier verifier(metadata, header.metadata_size, kMaxDepth, kMaxTables);
+  if (!fb::VerifyWeightsFileBuffer(verifier))
+    return Bad("metadata: not a valid FlatBuffer of identifier GSTW");
+  root_ = fb::GetWeightsFile(metadata);
+
+  GESTUS_RETURN_IF_ERROR(CheckNetworks(*root_));
+  const std::uint64_t data_offset = AlignUp(kHeaderSize + header.metadata_size);
+  std::uint64_t end = 0;
+  tensors_.reserve(root_->tensors()->size());
+  for (const fb::Tensor* t : *root_->tensors()) {
+    Entry entry;
+    GESTUS_RETURN_IF_ERROR(
+        CheckTensor(*t, tensors_.size(), base_ + data_offset, header.data_size, &end, &entry));
+    tensors_.push_back(std::move(entry));
+  }
+  std::sort(tensors_.begin(), tensors_.end(),
+            [](const Entry& a, const Entry& b) { return a.name < b.name; });
+  const auto twice =
+      std::adjacent_find(tensors_.begin(), tensors_.end(),
+                         [](const Entry& a, const Entry& b) { return a.name == b.name; });
+  if (twice != tensors_.end()) return Bad("tensor " + twice->name + ": name is used twice");
+  return {};
+}
+
+std::uint64_t WeightsFile::checksum() const { return ReadHeader(base_).checksum; }
+std::uint32_t WeightsFile::format_version() const { return ReadHeader(base_).format_version; }
+
+const WeightsFile::Entry* WeightsFile::Find(std::string_view name) const {
+  const auto it = std::lower_bound(tensors_.begin(), tensors_.end(), name,
+                                   [](const Entry& e, std::string_view n) { return e.name < n; });
+  return it != tensors_.end() && it->name == name ? &*it : nullptr;
+}
+
+const fb::Network* WeightsFile::FindNetwork(std::string_view name) const {
+  const auto& networks = *root_->networks();
+  if (name.empty()) return networks.size() == 1 ? networks.Get(0) : nullptr;
+  for (const fb::Network* n : networks) {
+    if (n->name()->string_view() == name) return n;
+  }
+  return nullptr;
+}
+
+void WeightsFile::GiveBack(const TensorView& view) const {
+  if (!mapped_) return;
+  const auto page = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));
+  const auto begin = reinterpret_cast<std::uintptr_t>(view.data);
+  const std::uintptr_t end =
+      begin + static_cast<std::uintptr_t>(view.shape.NumElements()) * SizeOf(view.dtype);
+  // Only pages that lie wholly inside: their neighbours belong to other tensors.
+  const std::uintptr_t first = (begin + page - 1) / page * page;
+  const std::uintptr_t last = end / page * page;
+  if (first < last) madvise(reinterpret_cast<void*>(first), last - first, MADV_DONTNEED);
+}
+
+}  // namespace gestus

@@ -1,0 +1,18 @@
+// The tables that the ISA objects export: their only symbols.  Constant-initialised, so that
+// choosing one needs neither a lock nor an order of start-up.
+#ifndef GESTUS_KERNELS_ISA_TABLES_H_
+#define GESTUS_KERNELS_ISA_TABLES_H_
+
+#include "kernels/kernels.h"
+
+namespace gestus::kernels {
+
+extern const KernelTable kScalarTable;
+extern const KernelTable kSse2Table;
+extern const KernelTable kAvx2Table;
+extern const KernelTable kAvx512Table;
+extern const KernelTable kNeonTable;
+
+}  // namespace gestus::kernels
+
+#endif  // GESTUS_KERNELS_ISA_TABLES_H_

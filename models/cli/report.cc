@@ -1,0 +1,165 @@
+#include "models/cli/report.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "models/cli/json.h"
+#include "models/cli/npy.h"
+#include "models/cli/text.h"
+
+namespace gestus::cli {
+namespace {
+
+using models::Array;
+
+const char* NumpyName(DType dtype) { return dtype == DType::kF32 ? "float32" : "int32"; }
+
+// "speech (192, 128)"
+std::string ArrayText(const std::string& name, const Array& array) {
+  return name + " " + ShapeText(array.shape);
+}
+
+std::string ArraysText(const models::Arrays& arrays) {
+  std::string text;
+  std::size_t taps = 0;
+  for (const auto& [name, array] : arrays) {
+    if (name.starts_with("tap/")) {
+      ++taps;
+    } else {
+      text += (text.empty() ? "" : ", ") + ArrayText(name, array);
+    }
+  }
+  if (taps > 0) text += " and " + Count(taps, "tap");
+  return text;
+}
+
+void ArraysJson(JsonWriter* json, const char* key, const models::Arrays& arrays) {
+  json->Key(key).BeginArray();
+  for (const auto& [name, array] : arrays) {
+    json->BeginObject().Member("name", name).Member("dtype", NumpyName(array.dtype));
+    json->Member("shape", array.shape).EndObject();
+  }
+  json->EndArray();
+}
+
+// The kind of an op is the last word of its name, "linear" in "content/ast/block.0 linear".
+std::vector<OpProfile> ByKind(const std::vector<OpProfile>& ops) {
+  std::vector<OpProfile> kinds;
+  for (const OpProfile& op : ops) {
+    const std::string kind = op.name.substr(op.name.rfind(' ') + 1);
+    auto found = std::find_if(kinds.begin(), kinds.end(),
+                              [&](const OpProfile& k) { return k.name == kind; });
+    if (found == kinds.end()) {
+      found = kinds.insert(found, OpProfile{});
+      found->name = kind;
+    }
+    found->runs += op.runs;
+    found->seconds += op.seconds;
+    found->flops += op.flops;
+    found->bytes += op.bytes;
+  }
+  std::stable_sort(kinds.begin(), kinds.end(),
+                   [](const OpProfile& a, const OpProfile& b) { return a.seconds > b.seconds; });
+  return kinds;
+}
+
+std::string ProfileTable(const std::vector<OpProfile>& ops, double total) {
+  std::vector<std::vector<std::string>> rows = {{"op", "runs", "time", "share", "GFLOP/s", "GB/s"}};
+  for (const OpProfile& op : ops) {
+    const auto rate = [&](double amount) {
+      return op.seconds > 0 ? Significant(amount / op.seconds * 1e-9, 3) : "-";
+    };
+    rows.push_back({op.name, Grouped(op.runs), Seconds(op.seconds),
+                    Fixed(total > 0 ? 100 * op.seconds / total : 0, 1) + " %", rate(op.flops),
+                    rate(op.bytes)});
+  }
+  return Table(rows, {1, 2, 3, 4, 5});
+}
+
+}  // namespace
+
+Timing Summarise(const models::RunReport& report, int repeat) {
+  Timing timing;
+  std::vector<double> seconds = report.segment_seconds;
+  if (seconds.empty()) return timing;
+  std::sort(seconds.begin(), seconds.end());
+  timing.segments = seconds.size() / static_cast<std::size_t>(std::max(repeat, 1));
+  timing.median = seconds[seconds.size() / 2];
+  timing.p99 = seconds[std::min(seconds.size() - 1, seconds.size() * 99 / 100)];
+  const double once = std::accumulate(seconds.begin(), seconds.end(), 0.0) / repeat;
+  if (once > 0 && report.frame_rate > 0) {
+    timing.times_real_time = static_cast<double>(report.frames) / report.frame_rate / once;
+  }
+  return timing;
+}
+
+std::string ProfileText(const std::vector<OpProfile>& ops) {
+  double total = 0;
+  for (const OpProfile& op : ops) total += op.seconds;
+  return "profile by kind of op\n" + ProfileTable(ByKind(ops), total) +
+         "profile in order of execution\n" + ProfileTable(ops, total);
+}
+
+std::string InferReport::Text() const {
+  const Timing timing = Summarise(run, arguments.repeat);
+  std::string text = "read   " + arguments.input + ": " + ArraysText(inputs) + "\n";
+  text += "wrote  " + arguments.output + ": " + ArraysText(outputs);
+  if (run.frame_rate > 0) {
+    text += ", " + Significant(static_cast<double>(run.frames) / run.frame_rate, 3) + " s at " +
+            Significant(run.frame_rate, 3) + " frames/s";
+  }
+  text += "\nspeed  " + Seconds(timing.median) + " a segment";
+  if (arguments.repeat > 1) text += " (median; p99 " + Seconds(timing.p99) + ")";
+  text += ", " + Count(timing.segments, "segment");
+  if (timing.times_real_time > 0) {
+    text += ", " + Significant(timing.times_real_time, 3) + " times real time";
+  }
+  text += ", " + Count(static_cast<std::uint64_t>(arguments.threads), "thread") + ", " +
+          setup.kernels->name + "\n";
+  for (const std::string& note : run.notes) text += "note   " + note + "\n";
+  if (!setup.Trained()) text += std::string("note   ") + kUntrained + "\n";
+  if (arguments.plan) text += "\n" + setup.network->PlanText();
+  if (arguments.profile) text += "\n" + ProfileText(run.ops);
+  return text;
+}
+
+std::string InferReport::Json() const {
+  const Timing timing = Summarise(run, arguments.repeat);
+  JsonWriter json;
+  json.BeginObject()
+      .Member("weights", arguments.weights)
+      .Member("kind", setup.network->kind())
+      .Member("trained", setup.Trained())
+      .Member("input", arguments.input)
+      .Member("output", arguments.output);
+  ArraysJson(&json, "inputs", inputs);
+  ArraysJson(&json, "outputs", outputs);
+  json.Member("segments", static_cast<std::uint64_t>(timing.segments))
+      .Member("frames", static_cast<std::uint64_t>(run.frames))
+      .Member("frame_rate", run.frame_rate)
+      .Member("repeat", arguments.repeat)
+      .Member("segment_seconds_median", timing.median)
+      .Member("segment_seconds_p99", timing.p99)
+      .Member("times_real_time", timing.times_real_time)
+      .Member("threads", arguments.threads)
+      .Member("isa", setup.kernels->name)
+      .Member("notes", run.notes);
+  if (arguments.plan) json.Member("plan", setup.network->PlanText());
+  if (arguments.profile) {
+    json.Key("profile").BeginArray();
+    for (const OpProfile& op : run.ops) {
+      json.BeginObject()
+          .Member("name", op.name)
+          .Member("runs", op.runs)
+          .Member("seconds", op.seconds)
+          .Member("flops", op.flops)
+          .Member("bytes", op.bytes)
+          .EndObject();
+    }
+    json.EndArray();
+  }
+  json.EndObject();
+  return json.text();
+}
+
+}  // namespace gestus::cli

@@ -1,0 +1,37 @@
+// What infer-cli says after a run: a few friendly lines, or JSON.
+#ifndef GESTUS_MODELS_CLI_REPORT_H_
+#define GESTUS_MODELS_CLI_REPORT_H_
+
+#include <string>
+
+#include "models/cli/args.h"
+#include "models/cli/setup.h"
+#include "models/network.h"
+
+namespace gestus::cli {
+
+/// Seconds of one run of one segment, over all of them.
+struct Timing {
+  std::size_t segments = 0;
+  double median = 0, p99 = 0;
+  double times_real_time = 0;  ///< 0 when unknown
+};
+Timing Summarise(const models::RunReport& report, int repeat);
+
+struct InferReport {
+  const Arguments& arguments;
+  const Setup& setup;
+  const models::Arrays& inputs;
+  const models::Arrays& outputs;
+  const models::RunReport& run;
+
+  std::string Text() const;
+  std::string Json() const;
+};
+
+/// Time, share, GFLOP/s and GB/s: first by kind of op, then of every op in order of execution.
+std::string ProfileText(const std::vector<OpProfile>& ops);
+
+}  // namespace gestus::cli
+
+#endif  // GESTUS_MODELS_CLI_REPORT_H_

@@ -1,0 +1,27 @@
+// Styles: what a network takes from a clip of a speaker, computed once and kept in a small file.
+//
+// A .style file is an .npz with the array `style` and, as `weights_checksum`, the lower and upper
+// 32 bits of the checksum of the weights that made it; a style means nothing to other weights.
+#ifndef GESTUS_MODELS_CLI_STYLE_H_
+#define GESTUS_MODELS_CLI_STYLE_H_
+
+#include <string>
+
+#include "engine/status.h"
+#include "models/cli/args.h"
+#include "models/cli/setup.h"
+
+namespace gestus::cli {
+
+/// Whether the network takes `name` only to know the style: "style", "style_speech", ...
+bool IsStyleInput(const std::string& name);
+
+/// Adds to `inputs` what --style names: a ready style, or the arrays of a clip.
+Status LoadStyle(const Setup& setup, const std::string& path, models::Arrays* inputs);
+
+/// infer-cli style
+Status RunStyle(const Arguments& arguments);
+
+}  // namespace gestus::cli
+
+#endif  // GESTUS_MODELS_CLI_STYLE_H_

@@ -1,0 +1,44 @@
+// What every Network::Run does besides running: timing, taps, profiles, checks of arrays.
+#ifndef GESTUS_MODELS_RUN_SUPPORT_H_
+#define GESTUS_MODELS_RUN_SUPPORT_H_
+
+#include <functional>
+#include <initializer_list>
+#include <string>
+
+#include "engine/session.h"
+#include "models/network.h"
+
+namespace gestus::models {
+
+/// Checks every array of `inputs` that `signature` names: shape, dtype, finite; says when a
+/// required one is missing.
+Status CheckInputs(const Signature& signature, const Arrays& inputs);
+
+/// All values finite, or an error that names the array and the first place that is not.
+Status CheckFinite(const std::string& name, const Array& array, Code code);
+
+/// A float32 array of that shape, zeroed.
+Array MakeArray(std::vector<std::int64_t> shape);
+
+/// Calls `run` as often as the options say and notes each time in the report.
+void TimedRun(const RunOptions& options, RunReport* report, const std::function<void()>& run);
+
+/// Counts segments for RunOptions::progress.
+struct Progress {
+  std::size_t done = 0, total = 0;
+  void Step(const RunOptions& options) {
+    ++done;
+    if (options.progress) options.progress(done, total);
+  }
+};
+
+/// Copies the session's outputs "tap/..." to `outputs`.
+void CopyTaps(const Session& session, Arrays* outputs);
+
+/// Adds the sessions' profiles to the report.
+void AddProfiles(std::initializer_list<const Session*> sessions, RunReport* report);
+
+}  // namespace gestus::models
+
+#endif  // GESTUS_MODELS_RUN_SUPPORT_H_

@@ -1,0 +1,55 @@
+#!/usr/bin/python3
+"""ZS-MSTM 1.0 and AST at full size against PyTorch, on every instruction set of this machine.
+
+Makes random weights from a fixed seed, exports them, and compares the engine's outputs and taps with
+the reference modules (python3 -m converters verify): relative error of each output <= 1e-4.
+Usage: full_size.py INFER_CLI WORK_FOLDER
+"""
+
+import json
+import os
+import pathlib
+import subprocess
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+MODES = ("autoregressive", "shifted_parallel", "parallel")
+
+
+def run(*command, **environment):
+    subprocess.run([str(c) for c in command], check=True, cwd=ROOT,
+                   env={**os.environ, **environment})
+
+
+def isas(infer_cli):
+    text = subprocess.run([infer_cli, "--version", "--json"], check=True, capture_output=True,
+                          text=True).stdout
+    return json.loads(text)["isas"]
+
+
+def check(infer_cli, work, name, kind, config, available):
+    weights, checkpoint = work / f"{name}.fb", work / f"{name}.pt"
+    config_file = work / f"{name}.json"
+    config_file.write_text(json.dumps(config))
+    run(sys.executable, "-m", "converters", "random", "--kind", kind, "--seed", 20231, "--config",
+        config_file, "-o", weights, "--checkpoint-out", checkpoint)
+    for isa in available:
+        print(f"== {name} on {isa}", flush=True)
+        run(sys.executable, "-m", "converters", "verify", weights, "--checkpoint", checkpoint,
+            "--infer-cli", infer_cli, GESTUS_ISA=isa)
+    weights.unlink()
+    checkpoint.unlink()
+
+
+def main():
+    infer_cli, work = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
+    work.mkdir(parents=True, exist_ok=True)
+    available = [isa for isa in isas(infer_cli) if isa != "scalar"]
+    for mode in MODES:
+        check(infer_cli, work, f"zs_mstm1_{mode}", "zs_mstm1", {"decoder_mode": mode}, available)
+    check(infer_cli, work, "ast", "ast", {}, available)
+    print("full size agrees with PyTorch on " + ", ".join(available))
+
+
+if __name__ == "__main__":
+    main()

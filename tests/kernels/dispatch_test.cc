@@ -1,0 +1,77 @@
+// The choice of a table: complete, named as GESTUS_ISA spells it, and the same for all threads.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "kernels/kernels.h"
+
+namespace gestus::test {
+namespace {
+
+using kernels::Isa;
+using kernels::KernelTable;
+
+constexpr Isa kAll[] = {Isa::kScalar, Isa::kSse2, Isa::kNeon, Isa::kAvx2, Isa::kAvx512};
+
+TEST(DispatchTest, NamesGoBothWays) {
+  for (const Isa isa : kAll) {
+    Isa parsed = Isa::kNeon;
+    ASSERT_TRUE(kernels::ParseIsa(kernels::IsaName(isa), &parsed));
+    EXPECT_EQ(parsed, isa);
+  }
+  Isa untouched = Isa::kAvx2;
+  for (const char* wrong : {"", "AVX2", "avx", "avx5120", "scalar "}) {
+    EXPECT_FALSE(kernels::ParseIsa(wrong, &untouched)) << wrong;
+  }
+  EXPECT_EQ(untouched, Isa::kAvx2);
+}
+
+TEST(DispatchTest, TablesSayWhatTheyAre) {
+  ASSERT_NE(kernels::TableFor(Isa::kScalar), nullptr);
+  for (const Isa isa : kAll) {
+    const KernelTable* table = kernels::TableFor(isa);
+    if (table == nullptr) continue;
+    EXPECT_EQ(table->isa, isa);
+    EXPECT_STREQ(table->name, kernels::IsaName(isa));
+    EXPECT_GT(table->gemm_block_n, 0u);
+    EXPECT_GT(table->lstm_block, 0u);
+  }
+}
+
+TEST(DispatchTest, AllThreadsGetTheSameTable) {
+  std::vector<const KernelTable*> seen(8);
+  std::vector<std::thread> threads;
+  for (auto& slot : seen) threads.emplace_back([&slot] { slot = &kernels::BestTable(); });
+  for (std::thread& thread : threads) thread.join();
+  for (const KernelTable* table : seen) EXPECT_EQ(table, &kernels::BestTable());
+}
+
+// The choice is made once per process, so each value is tried in a child of its own.
+TEST(DispatchDeathTest, EnvironmentLowersTheChoice) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  const auto exit_if = [](const char* value, Isa want) {
+    setenv("GESTUS_ISA", value, 1);
+    std::exit(kernels::BestTable().isa == want ? 0 : 1);
+  };
+  unsetenv("GESTUS_ISA");
+  Isa best = Isa::kScalar;
+  for (const Isa isa : kAll) {
+    if (kernels::TableFor(isa) == nullptr) continue;
+    best = isa;
+    EXPECT_EXIT(exit_if(kernels::IsaName(isa), isa), ::testing::ExitedWithCode(0), "")
+        << kernels::IsaName(isa);
+  }
+  EXPECT_EXIT(exit_if("altivec", best), ::testing::ExitedWithCode(0), "");
+  EXPECT_EXIT(exit_if("", best), ::testing::ExitedWithCode(0), "");
+  for (const Isa isa : kAll) {
+    if (kernels::TableFor(isa) != nullptr) continue;
+    EXPECT_EXIT(exit_if(kernels::IsaName(isa), best), ::testing::ExitedWithCode(0), "")
+        << kernels::IsaName(isa);
+  }
+}
+
+}  // namespace
+}  // namespace gestus::test

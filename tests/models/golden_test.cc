@@ -1,0 +1,117 @@
+// Every alternative reading of the specification, engine against PyTorch: tests/goldens holds tiny
+// networks with inputs, outputs and taps that converters/goldens.py computed (README.md there).
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "models/cli/npz.h"
+#include "models/network.h"
+#include "models/self_test.h"
+
+namespace gestus::models {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Relative to the largest absolute value: the bound that full-size networks are held to as well.
+constexpr double kTolerance = 1e-4;
+
+std::vector<std::string> Cases() {
+  std::vector<std::string> cases;
+  for (const auto& entry : fs::directory_iterator(GESTUS_GOLDENS)) {
+    if (entry.path().extension() == ".fb") cases.push_back(entry.path().stem().string());
+  }
+  std::sort(cases.begin(), cases.end());
+  return cases;
+}
+
+Arrays ReadAll(const std::string& path) {
+  const Result<std::vector<std::string>> names = cli::ListNpz(path);
+  EXPECT_TRUE(names.ok()) << names.status().message();
+  std::vector<ArraySpec> wanted;
+  for (const std::string& name : *names) {
+    ArraySpec spec;
+    spec.name = name;
+    wanted.push_back(spec);
+  }
+  Result<cli::NpzContents> contents = cli::ReadNpz(path, wanted);
+  EXPECT_TRUE(contents.ok()) << contents.status().message();
+  return std::move(contents->arrays);
+}
+
+/// Compares the rows that `got` has: where only the first rows of a value are needed, the engine
+/// computes no others.
+void ExpectClose(const std::string& name, const Array& got, const Array& want) {
+  ASSERT_LE(got.f32.size(), want.f32.size()) << name;
+  ASSERT_EQ(got.shape.back(), want.shape.back()) << name;
+  double worst = 0, largest = 0;
+  for (std::size_t i = 0; i < got.f32.size(); ++i) {
+    worst = std::max(worst, std::fabs(double{got.f32[i]} - want.f32[i]));
+    largest = std::max(largest, std::fabs(double{want.f32[i]}));
+  }
+  EXPECT_LE(worst, kTolerance * largest) << name << ": relative error " << worst / largest;
+  EXPECT_GT(largest, 0) << name << ": expected values are all zero and prove nothing";
+}
+
+class GoldenTest : public testing::TestWithParam<std::tuple<std::string, kernels::Isa>> {};
+
+TEST_P(GoldenTest, AgreesWithPyTorch) {
+  const auto& [name, isa] = GetParam();
+  const kernels::KernelTable* table = kernels::TableFor(isa);
+  if (table == nullptr) GTEST_SKIP() << "no " << kernels::IsaName(isa) << " on this machine";
+  const std::string stem = std::string(GESTUS_GOLDENS) + "/" + name;
+
+  const auto file = WeightsFile::Open(stem + ".fb");
+  ASSERT_TRUE(file.ok()) << file.status().message();
+  auto network = MakeNetwork(*file, "", {.kernels = table});
+  ASSERT_TRUE(network.ok()) << network.status().message();
+  const Arrays golden = ReadAll(stem + ".npz");
+  Arrays inputs;
+  for (const ArraySpec& spec : (*network)->signature().inputs) {
+    const auto it = golden.find(spec.name);
+    if (it != golden.end()) inputs.insert(*it);
+  }
+  // A golden holds the style it expects under the name of the input; the clip decides.
+  if (inputs.count("style_speech") != 0) inputs.erase("style");
+
+  for (const bool taps : {false, true}) {
+    RunReport report;
+    const auto outputs = (*network)->Run(inputs, {.taps = taps}, &report);
+    ASSERT_TRUE(outputs.ok()) << outputs.status().message();
+    std::size_t compared = 0;
+    for (const auto& [output, array] : *outputs) {
+      const auto want = golden.find(output);
+      if (want == golden.end()) continue;
+      ExpectClose(output, array, want->second);
+      ++compared;
+    }
+    EXPECT_GT(compared, taps ? std::size_t{5} : std::size_t{0});
+  }
+
+  const auto self_test = RunSelfTest(**file, "", **network);
+  ASSERT_TRUE(self_test.ok()) << self_test.status().message();
+  if (self_test->present) {
+    EXPECT_TRUE(self_test->passed()) << self_test->relative_error;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, GoldenTest,
+    testing::Combine(testing::ValuesIn(Cases()),
+                     testing::Values(kernels::Isa::kScalar, kernels::Isa::kSse2,
+                                     kernels::Isa::kNeon, kernels::Isa::kAvx2,
+                                     kernels::Isa::kAvx512)),
+    [](const auto& test) {
+      std::string name = std::get<0>(test.param) + "_" + kernels::IsaName(std::get<1>(test.param));
+      std::replace_if(
+          name.begin(), name.end(), [](char c) { return std::isalnum(c) == 0; }, '_');
+      return name;
+    });
+
+}  // namespace
+}  // namespace gestus::models

@@ -1,0 +1,35 @@
+# How each dependency is found.  Everything comes from Debian packages (third_party/README.md names
+# them); nothing is vendored and nothing is downloaded.
+
+# xsimd 8.1, header only: the SIMD batches of kernels/.  The include path is shared with the system,
+# so the target only proves that the package is there.
+find_package(xsimd 8.1 REQUIRED)
+
+# FlatBuffers 2.0.8.  The generated header insists on the exact library version, so it is generated
+# at build time, never committed.
+find_path(GESTUS_FLATBUFFERS_INCLUDE flatbuffers/flatbuffers.h REQUIRED)
+find_program(GESTUS_FLATC flatc REQUIRED)
+
+# XXH3 for the checksum of weights files.
+find_path(GESTUS_XXHASH_INCLUDE xxhash.h REQUIRED)
+
+find_package(Threads REQUIRED)
+
+# libzip reads and writes .npz, CLI11 parses the command line.
+if(GESTUS_BUILD_CLI OR GESTUS_BUILD_TESTS)
+  find_package(PkgConfig)
+  if(PkgConfig_FOUND AND NOT CMAKE_CROSSCOMPILING)
+    pkg_check_modules(libzip IMPORTED_TARGET libzip>=1.7)
+    find_package(CLI11 2.1)
+  endif()
+endif()
+
+if(GESTUS_BUILD_TESTS AND NOT CMAKE_CROSSCOMPILING)
+  find_package(GTest 1.12 REQUIRED)
+endif()
+
+if(GESTUS_BUILD_BENCH)
+  find_package(benchmark 1.7 REQUIRED)
+  find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+  find_package(OpenMP REQUIRED COMPONENTS CXX)
+endif()
