@@ -61,7 +61,7 @@ def _parser():
     verify.add_argument("--infer-cli", default="infer-cli", metavar="PATH")
     verify.add_argument("--seed", type=int, default=0)
     verify.add_argument("--tolerance", type=float, default=1e-4,
-                        help="largest relative error of an output (default %(default)s)")
+                        help="largest relative error of any value (default %(default)s)")
     verify.set_defaults(run=_verify)
 
     inspect = commands.add_parser("inspect", help="what a checkpoint or a weights file holds")
@@ -73,8 +73,8 @@ def _parser():
 def _network_options(parser):
     parser.add_argument("--kind", choices=("zs_mstm1", "ast"), default="zs_mstm1")
     parser.add_argument("--config", metavar="CONFIG.json",
-                        help="fields of the schema's table Network: config, joints, "
-                             "normalisations; what is absent takes the schema's default")
+                        help="fields of the configuration, and joints and normalisations, as the "
+                             "schema names them; what is absent takes the schema's default")
 
 
 def _network(options):
@@ -87,8 +87,9 @@ def _network(options):
             raise ConvertError(f"{options.config}: {error}") from None
     if not isinstance(fields, dict):
         raise ConvertError(f"{options.config}: expected an object with the fields of a network")
+    network = {key: fields.pop(key) for key in networks.NETWORK_FIELDS if key in fields}
     try:
-        return networks.complete(options.kind, fields)
+        return networks.complete(options.kind, {**network, "config": fields})
     except ConvertError as error:
         raise ConvertError(f"{options.config}: {error}") from None
 

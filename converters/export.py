@@ -21,18 +21,23 @@ def export(checkpoint, network, path, provenance, ast=None, allow_unused=False, 
     Returns the report: lines about what was adapted, filled in from `ast` or left out.
     """
     report = []
-    arrays = dict(checkpoint.tensors)
-    if ast is not None:
-        _fill_ast(arrays, ast, network, report)
-    wanted = shapes.network_shapes(network)
-    _adapt(arrays, network, report)
-    tensors = match(arrays, wanted, checkpoint.path, report, allow_unused)
+    tensors = checkpoint_tensors(checkpoint, network, ast, report, allow_unused)
     source = f"{checkpoint.name} sha256:{_sha256(checkpoint.path)}"
     if ast is not None:
         source += f", {ast.name} sha256:{_sha256(ast.path)}"
     provenance = provenance | {"source": source}
     write(path, network, tensors, provenance, self_test, report)
     return report
+
+
+def checkpoint_tensors(checkpoint, network, ast=None, report=None, allow_unused=True):
+    """The tensors of `network` (key -> float32 array) from `checkpoint`, adapted to its shapes."""
+    report = [] if report is None else report
+    arrays = dict(checkpoint.tensors)
+    if ast is not None:
+        _fill_ast(arrays, ast, network, report)
+    _adapt(arrays, network, report)
+    return match(arrays, shapes.network_shapes(network), checkpoint.path, report, allow_unused)
 
 
 def write(path, network, tensors, provenance, self_test, report):

@@ -16,7 +16,11 @@ PATS_JOINTS = (
 # How far an untrained figure moves: deviations of the joints above, in the same units.
 _MOTION = (4, 6, 28, 60, 6, 28, 60, 10, 10, 10, 66)
 # Of log_mel_512 (converters/features.py) on read speech; PATS' own values are not published.
-_SPEECH = {"stream": "speech", "mean": [-8.0], "deviation": [4.0]}
+_SPEECH = {"stream": "speech", "mean": [-6.0], "deviation": [3.5]}
+
+
+# Fields of the schema's Network, beside its configuration, that whoever exports may choose.
+NETWORK_FIELDS = ("name", "prefix", "joints", "normalisations")
 
 
 def default_network(kind):
@@ -27,10 +31,6 @@ def default_network(kind):
 def complete(kind, network):
     """`network` (fields of the schema's Network; `config` may leave out what is default) with every
     default filled in and checked."""
-    unknown = set(network) - {"name", "prefix", "config", "joints", "normalisations"}
-    if unknown:
-        raise ConvertError(f"configuration: {sorted(unknown)[0]}: unknown, expected name, prefix, "
-                           "config, joints or normalisations")
     config = dict(network.get("config", {}))
     if kind == "zs_mstm1":
         config.setdefault("ast_content", {})

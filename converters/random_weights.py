@@ -13,7 +13,8 @@ from . import shapes
 # Factors on 1 / sqrt(fan in), by the end of a key's module path.  Queries and keys are large so
 # that attention picks rows instead of averaging over all of them, which would leave the output
 # constant along time.
-_GAINS = {"in_proj_weight": 1.6, "attn.qkv.weight": 1.3, "weight_ih_l": 1.5, "weight_hh_l": 1.0}
+_GAINS = {"multihead_attn.in_proj_weight": 3.0, "in_proj_weight": 2.0, "attn.qkv.weight": 1.3,
+          "weight_ih_l": 2.5, "weight_hh_l": 1.5, "pose_embedding.weight": 0.5}
 
 
 def random_weights(network, seed):

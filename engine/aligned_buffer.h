@@ -1,4 +1,4 @@
-// Zeroed memory on 64-byte boundaries, every page touched, owned by whoever holds the buffer.
+// Memory on 64-byte boundaries, owned by whoever holds the buffer.
 #ifndef GESTUS_ENGINE_ALIGNED_BUFFER_H_
 #define GESTUS_ENGINE_ALIGNED_BUFFER_H_
 
@@ -13,14 +13,16 @@ inline constexpr std::size_t kBufferAlign = 64;
 class AlignedBuffer {
  public:
   AlignedBuffer() = default;
-  /// data() stays null when there is no such memory.
-  explicit AlignedBuffer(std::size_t bytes) {
-    // 64 bytes more than asked for: kernels may load, never use, a vector past the end.
-    const std::size_t padded = (bytes + 2 * kBufferAlign - 1) / kBufferAlign * kBufferAlign;
-    data_.reset(std::aligned_alloc(kBufferAlign, padded));
-    if (data_ == nullptr) return;
-    std::memset(data_.get(), 0, padded);
-    size_ = bytes;
+  /// Zeroed, so every page is touched.  data() stays null when there is no such memory.
+  explicit AlignedBuffer(std::size_t bytes) : AlignedBuffer(Unset(bytes)) {
+    if (data_ != nullptr) std::memset(data_.get(), 0, Padded(bytes));
+  }
+  /// For memory that is written as a whole at once.
+  static AlignedBuffer Unset(std::size_t bytes) {
+    AlignedBuffer buffer;
+    buffer.data_.reset(std::aligned_alloc(kBufferAlign, Padded(bytes)));
+    if (buffer.data_ != nullptr) buffer.size_ = bytes;
+    return buffer;
   }
 
   std::byte* data() const { return static_cast<std::byte*>(data_.get()); }
@@ -28,6 +30,10 @@ class AlignedBuffer {
   std::size_t size() const { return size_; }
 
  private:
+  /// 64 bytes more than asked for: kernels may load, never use, a vector past the end.
+  static std::size_t Padded(std::size_t bytes) {
+    return (bytes + 2 * kBufferAlign - 1) / kBufferAlign * kBufferAlign;
+  }
   struct Free {
     void operator()(void* p) const { std::free(p); }
   };

@@ -43,7 +43,8 @@ class Fuser {
       if (g_.nodes[i].op == Op::kActivate) FuseActivation(i);
       if (g_.nodes[i].op == Op::kAdd) FuseResidual(i);
     }
-    for (std::size_t i = 0; i < g_.nodes.size(); ++i) {
+    // The outer of two concatenations first: the inner one's parts then get the outer's strides.
+    for (std::size_t i = g_.nodes.size(); i-- > 0;) {
       const Op op = g_.nodes[i].op;
       if (op == Op::kConcat || op == Op::kConcatRows) dead_[i] = PlaceParts(g_.nodes[i]);
     }
@@ -66,6 +67,14 @@ class Fuser {
     return n.op == Op::kLinear && n.act == Activation::kNone && !n.residual ? p : -1;
   }
 
+  bool ReadsBuffer(const Node& node) const {
+    for (int in : node.inputs) {
+      const int base = g_.values[Index(in)].base;
+      if (g_.values[Index(base < 0 ? in : base)].buffer) return true;
+    }
+    return false;
+  }
+
   void FuseActivation(std::size_t i) {
     Node& act = g_.nodes[i];
     const int p = PlainLinear(act.inputs[0], act);
@@ -85,6 +94,7 @@ class Fuser {
       const int product = add.inputs[which], other = add.inputs[1 - which];
       const int p = SoleProducer(product, add);
       if (p < 0 || g_.nodes[Index(p)].op != Op::kLinear || g_.nodes[Index(p)].residual) continue;
+      if (ReadsBuffer(g_.nodes[Index(p)])) continue;  // a row may be stored in between
       if (!(g_.values[Index(product)].shape == g_.values[Index(add.output)].shape)) continue;
       Node linear = g_.nodes[Index(p)];
       linear.inputs.push_back(other);

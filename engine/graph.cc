@@ -19,6 +19,10 @@ Shape WithRows(const Shape& s, std::int64_t rows) {
   return s.rank() == 3 ? Shape{s[0], rows, s[2]} : Shape{rows, s.Cols()};
 }
 
+bool BiasFits(const TensorView& bias, std::int64_t n) {
+  return bias.data == nullptr || bias.shape == Shape{n};
+}
+
 }  // namespace
 
 const char* Name(Op op) {
@@ -80,11 +84,16 @@ bool Graph::Expect(bool holds, const std::string& message) {
 
 const Shape& Graph::shape(Value x) const {
   static const Shape kNone;
-  return Bad(x) ? kNone : info(x).shape;
+  return status_.ok() && Exists(x) ? info(x).shape : kNone;
 }
 
-bool Graph::Bad(Value x) const {
-  return !status_.ok() || x.id < 0 || static_cast<std::size_t>(x.id) >= values_.size();
+bool Graph::Bad(Value x) { return !Expect(Exists(x), "a value is used that was never made"); }
+
+bool Graph::GoodShape(const char* op, const Shape& shape) {
+  bool good = shape.rank() <= 3;
+  for (int i = 0; i < shape.rank(); ++i) good = good && shape[i] > 0;
+  return Expect(good, std::string(op) + ": shape " + shape.ToString() +
+                          ", expected up to three dimensions of at least 1");
 }
 
 Value Graph::NewValue(Shape shape, DType dtype) {
@@ -120,6 +129,13 @@ Node Graph::NewNode(Op op, std::vector<int> inputs) const {
 }
 
 Value Graph::Emit(Node node, Shape shape) {
+  for (int in : node.inputs) {
+    const DType wanted = node.op == Op::kGather ? DType::kI32 : DType::kF32;
+    const DType found = info({in}).dtype;
+    if (!Expect(found == wanted, std::string(gestus::Name(node.op)) + ": input is " +
+                                     gestus::Name(found) + ", expected " + gestus::Name(wanted)))
+      return {};
+  }
   const Value out = NewValue(shape);
   node.output = out.id;
   nodes_.push_back(std::move(node));
@@ -142,7 +158,7 @@ Value Graph::OwnedConstant(float* data, Shape shape) {
 }
 
 Value Graph::Input(const std::string& name, Shape shape, DType dtype) {
-  if (!status_.ok()) return {};
+  if (!GoodShape("input", shape)) return {};
   const Value v = NewValue(shape, dtype);
   values_.back().input = true;
   inputs_.push_back({name, v.id});
@@ -150,19 +166,19 @@ Value Graph::Input(const std::string& name, Shape shape, DType dtype) {
 }
 
 Value Graph::Constant(const TensorView& view) {
-  if (!status_.ok()) return {};
+  if (!GoodShape("constant", view.shape)) return {};
   const Value v = NewValue(view.shape, view.dtype);
   values_.back().constant = view.data;
   return v;
 }
 
 Value Graph::Zeros(Shape shape) {
-  if (!status_.ok()) return {};
+  if (!GoodShape("zeros", shape)) return {};
   return OwnedConstant(Own(static_cast<std::size_t>(shape.NumElements())), shape);
 }
 
 Value Graph::Positions(std::int64_t length, std::int64_t d) {
-  if (!status_.ok()) return {};
+  if (!GoodShape("positions", {length, d})) return {};
   float* data = Own(static_cast<std::size_t>(length * d));
   if (data != nullptr)
     kernels::sinusoidal_positions(data, static_cast<std::size_t>(length),
@@ -175,7 +191,9 @@ Value Graph::Linear(Value x, const LinearWeights& w, Activation act, float alpha
   if (!Expect(w.weight.shape.rank() == 2 && shape(x).Cols() == w.weight.shape[1],
               "linear: input is " + shape(x).ToString() + " and weight " +
                   w.weight.shape.ToString() +
-                  ", expected (out, in) with in = columns of the input"))
+                  ", expected (out, in) with in = columns of the input") ||
+      !Expect(BiasFits(w.bias, w.weight.shape[0]), "linear: bias " + w.bias.shape.ToString() +
+                                                       " for weight " + w.weight.shape.ToString()))
     return {};
   Node node = NewNode(Op::kLinear, {x.id});
   node.weight = w.weight;
@@ -188,7 +206,8 @@ Value Graph::Linear(Value x, const LinearWeights& w, Activation act, float alpha
 Value Graph::Attention(Value q, Value k, Value v, const AttentionOptions& o) {
   if (Bad(q) || Bad(k) || Bad(v)) return {};
   const Shape &sq = shape(q), &sk = shape(k), &sv = shape(v);
-  if (!Expect(o.heads > 0 && sq.Cols() == sk.Cols() && RowsOf(sk) == RowsOf(sv) &&
+  if (!Expect(o.heads > 0 && sq.rank() >= 2 && sk.rank() >= 2 && sv.rank() >= 2 &&
+                  sq.Cols() == sk.Cols() && RowsOf(sk) == RowsOf(sv) &&
                   BatchOf(sq) == BatchOf(sk) && BatchOf(sk) == BatchOf(sv),
               "attention: q " + sq.ToString() + ", k " + sk.ToString() + ", v " + sv.ToString() +
                   " do not fit each other") ||
@@ -197,8 +216,9 @@ Value Graph::Attention(Value q, Value k, Value v, const AttentionOptions& o) {
                   std::to_string(sq.Cols()) + " and " + std::to_string(sv.Cols())) ||
       !Expect(o.key_bias.id < 0 || shape(o.key_bias).NumElements() == RowsOf(sk),
               "attention: key mask does not have one value for each key") ||
-      !Expect(!o.by_step || (loop_ >= 0 && RowsOf(sq) == 1),
-              "attention: by_step needs a loop and one query row"))
+      !Expect(!o.by_step || (loop_ >= 0 && RowsOf(sq) == 1 &&
+                             RowsOf(sk) >= loops_[static_cast<std::size_t>(loop_)].count),
+              "attention: by_step needs a loop, one query row and a key for each step"))
     return {};
   Node node = NewNode(Op::kAttention, {q.id, k.id, v.id});
   if (o.key_bias.id >= 0) node.inputs.push_back(o.key_bias.id);
@@ -215,9 +235,9 @@ Value Graph::Lstm(Value x, const LstmWeights& w, bool reverse) {
   if (Bad(x)) return {};
   const Shape& hh = w.w_hh.shape;
   if (!Expect(hh.rank() == 2 && hh[0] == 4 * hh[1] && w.w_ih.shape.rank() == 2 &&
-                  w.w_ih.shape[0] == hh[0],
+                  w.w_ih.shape[0] == hh[0] && BiasFits(w.b_ih, hh[0]) && BiasFits(w.b_hh, hh[0]),
               "lstm: weights " + w.w_ih.shape.ToString() + " and " + hh.ToString() +
-                  ", expected (4H, in) and (4H, H)"))
+                  ", expected (4H, in) and (4H, H), biases (4H,)"))
     return {};
   const auto gates = static_cast<std::size_t>(hh[0]);
   float* bias = Own(gates);
@@ -241,10 +261,10 @@ Value Graph::Conv1d(Value x, const LinearWeights& w, std::int64_t stride, std::i
   const Shape sx = shape(x), &sw = w.weight.shape;
   const std::int64_t rows = RowsOf(sx) + pad_before + pad_after;
   if (!Expect(sw.rank() == 3 && sw[1] == sx.Cols() && stride > 0 && pad_before >= 0 &&
-                  pad_after >= 0 && rows >= sw[2],
+                  pad_after >= 0 && rows >= sw[2] && BiasFits(w.bias, sw[0]),
               "conv1d: input " + sx.ToString() + " and weight " + sw.ToString() +
                   ", expected (C_out, C_in, k) with C_in = columns of the input and k at most the "
-                  "padded rows"))
+                  "padded rows, and a bias (C_out,)"))
     return {};
   Node pad = NewNode(Op::kPadRows, {x.id});
   pad.before = pad_before;
@@ -410,7 +430,8 @@ Value Graph::Reshape(Value x, Shape to) {
   const bool contiguous =
       (v.row_stride == v.shape.Cols() || RowsOf(v.shape) == 1) &&
       (BatchOf(v.shape) == 1 || v.batch_stride == v.shape.Cols() * RowsOf(v.shape));
-  if (!Expect(contiguous && to.NumElements() == v.shape.NumElements(),
+  if (!GoodShape("reshape", to) ||
+      !Expect(contiguous && to.NumElements() == v.shape.NumElements(),
               "reshape: " + v.shape.ToString() + " to " + to.ToString()))
     return {};
   return View(x, to, 0, to.Cols(), to.Cols() * RowsOf(to));
@@ -429,7 +450,8 @@ void Graph::EndLoop() {
 }
 
 Value Graph::Buffer(Shape shape) {
-  if (!status_.ok() || !Expect(loop_ < 0, "buffer: declare it before the loop")) return {};
+  if (!GoodShape("buffer", shape) || !Expect(loop_ < 0, "buffer: declare it before the loop"))
+    return {};
   const Value v = NewValue(shape);
   values_.back().buffer = true;
   return v;
@@ -437,8 +459,8 @@ Value Graph::Buffer(Shape shape) {
 
 void Graph::StoreRow(Value buffer, Value row) {
   if (Bad(buffer) || Bad(row)) return;
-  if (!Expect(info(buffer).buffer && loop_ >= 0 && shape(row).Rows() == 1 &&
-                  shape(row).Cols() == shape(buffer).Cols() &&
+  if (!Expect(info(buffer).buffer && loop_ >= 0 && BatchOf(shape(buffer)) == 1 &&
+                  shape(row).Rows() == 1 && shape(row).Cols() == shape(buffer).Cols() &&
                   shape(buffer).Rows() >= loops_[static_cast<std::size_t>(loop_)].count,
               "store_row: row " + shape(row).ToString() + " into " + shape(buffer).ToString()))
     return;
@@ -449,7 +471,8 @@ void Graph::StoreRow(Value buffer, Value row) {
 
 Value Graph::StepRow(Value x) {
   if (Bad(x)) return {};
-  if (!Expect(loop_ >= 0 && shape(x).Rows() >= loops_[static_cast<std::size_t>(loop_)].count,
+  if (!Expect(loop_ >= 0 && BatchOf(shape(x)) == 1 &&
+                  shape(x).Rows() >= loops_[static_cast<std::size_t>(loop_)].count,
               "step_row: " + shape(x).ToString() + " has fewer rows than the loop has steps"))
     return {};
   return Emit(NewNode(Op::kStepRow, {x.id}), {1, shape(x).Cols()});
@@ -463,7 +486,8 @@ Value Graph::PreviousRow(Value buffer) {
 }
 
 void Graph::Output(const std::string& name, Value x) {
-  if (!Bad(x)) outputs_.push_back({name, x.id});
+  if (!Bad(x) && Expect(loop_ < 0, "output: declare it after the loop"))
+    outputs_.push_back({name, x.id});
 }
 
 void Graph::Tap(const std::string& name, Value x) {

@@ -205,7 +205,12 @@ class Graph {
   const std::vector<std::shared_ptr<AlignedBuffer>>& owned() const { return owned_; }
 
  private:
-  bool Bad(Value x) const;
+  /// True when nothing can be done with x; a handle of no value is an error of its own.
+  bool Bad(Value x);
+  bool Exists(Value x) const {
+    return x.id >= 0 && static_cast<std::size_t>(x.id) < values_.size();
+  }
+  bool GoodShape(const char* op, const Shape& shape);
   const ValueInfo& info(Value x) const { return values_[static_cast<std::size_t>(x.id)]; }
   Value NewValue(Shape shape, DType dtype = DType::kF32);
   Value View(Value x, Shape shape, std::ptrdiff_t offset, std::ptrdiff_t row_stride,

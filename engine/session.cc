@@ -128,7 +128,10 @@ Result<std::unique_ptr<Session>> Session::Create(std::shared_ptr<const Plan> pla
                     "session: " + std::to_string(options.threads) + " threads are not to be had");
   }
   impl.BindOps(p);
-  if (options.profile) session->ResetProfile();
+  if (options.profile) {
+    for (const Plan::Step& step : p.steps())
+      impl.profile.push_back({step.node.scope + " " + gestus::Name(step.node.op), 0, 0, 0, 0});
+  }
   return session;
 }
 
@@ -181,9 +184,7 @@ std::uint64_t Session::arena_bytes() const { return impl_->arena.size() + impl_-
 std::vector<OpProfile> Session::Profile() const { return impl_->profile; }
 
 void Session::ResetProfile() {
-  impl_->profile.clear();
-  for (const Plan::Step& step : plan_->steps())
-    impl_->profile.push_back({step.node.scope + " " + gestus::Name(step.node.op), 0, 0, 0, 0});
+  for (OpProfile& op : impl_->profile) op.runs = 0, op.seconds = op.flops = op.bytes = 0;
 }
 
 }  // namespace gestus

@@ -29,7 +29,8 @@ class [[nodiscard]] Status {
   explicit operator bool() const { return ok(); }
   Code code() const { return code_; }
   /// One sentence, without a final newline; empty when ok.
-  const std::string& message() const { return message_; }
+  const std::string& message() const& { return message_; }
+  std::string message() && { return std::move(message_); }
 
   /// The same error with "where: " put before its sentence.
   Status In(const std::string& where) const {

@@ -1,9 +1,7 @@
 // Parking, waking and meeting of the threads of a run.
 #include "engine/thread_pool.h"
 
-#include <pthread.h>
-
-#include <system_error>
+#include <memory>
 
 namespace gestus {
 namespace {
@@ -60,26 +58,36 @@ Worker::Range Worker::Part(std::size_t n, std::size_t grain) const {
   return {begin < n ? begin : n, end < n ? end : n};
 }
 
+struct ThreadPool::Start {
+  ThreadPool* pool;
+  int index;
+};
+
 ThreadPool::ThreadPool(int threads)
     : threads_(threads), fork_generation_(ForkGeneration()), barrier_(threads) {
   workers_.reserve(static_cast<std::size_t>(threads - 1));
-  try {
-    for (int i = 1; i < threads; ++i) workers_.emplace_back(&ThreadPool::Work, this, i);
-  } catch (const std::system_error&) {
-    complete_ = false;
+  const auto enter = [](void* p) -> void* {
+    const std::unique_ptr<Start> start(static_cast<Start*>(p));
+    start->pool->Work(start->index);
+    return nullptr;
+  };
+  for (int i = 1; i < threads; ++i) {
+    auto start = std::make_unique<Start>(Start{this, i});
+    pthread_t thread;
+    complete_ = pthread_create(&thread, nullptr, enter, start.get()) == 0;
+    if (!complete_) return;
+    start.release();  // the thread owns it now
+    workers_.push_back(thread);
   }
 }
 
 ThreadPool::~ThreadPool() {
-  if (fork_generation_ != ForkGeneration()) {
-    // The threads stayed in the parent; their handles cannot be joined here.
-    for (std::thread& w : workers_) w.detach();
-    return;
-  }
+  // In a child the handles mean nothing: the threads stayed in the parent.
+  if (fork_generation_ != ForkGeneration()) return;
   stop_.store(true, std::memory_order_relaxed);
   epoch_.fetch_add(1, std::memory_order_release);
   epoch_.notify_all();
-  for (std::thread& w : workers_) w.join();
+  for (pthread_t w : workers_) pthread_join(w, nullptr);
 }
 
 void ThreadPool::Run(Task task, void* context) {

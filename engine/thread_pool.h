@@ -4,10 +4,11 @@
 #ifndef GESTUS_ENGINE_THREAD_POOL_H_
 #define GESTUS_ENGINE_THREAD_POOL_H_
 
+#include <pthread.h>
+
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
-#include <thread>
 #include <vector>
 
 namespace gestus {
@@ -61,6 +62,7 @@ class ThreadPool {
   void Run(Task task, void* context);
 
  private:
+  struct Start;
   void Work(int index);
   int threads_;
   bool complete_ = true;
@@ -71,7 +73,7 @@ class ThreadPool {
   std::atomic<bool> stop_{false};
   Task task_ = nullptr;
   void* context_ = nullptr;
-  std::vector<std::thread> workers_;
+  std::vector<pthread_t> workers_;  // not std::thread, which a child made by fork() cannot drop
 };
 
 }  // namespace gestus

@@ -30,7 +30,7 @@ std::shared_ptr<const AlignedBuffer> WeightCache::Packed(const TensorView& weigh
   const auto k = static_cast<std::size_t>(weight.shape.NumElements()) / n;
   const std::size_t floats = layout == PackLayout::kRecurrent ? kernels_.f32_lstm_packed_size(k)
                                                               : kernels_.f32_gemm_packed_size(n, k);
-  auto buffer = std::make_shared<AlignedBuffer>(floats * sizeof(float));
+  auto buffer = std::make_shared<AlignedBuffer>(AlignedBuffer::Unset(floats * sizeof(float)));
   if (buffer->data() == nullptr) return nullptr;
   switch (layout) {
     case PackLayout::kRecurrent:

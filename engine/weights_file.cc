@@ -92,13 +92,15 @@ Status CheckHeader(const Header& h, std::uint64_t size) {
   return {};
 }
 
-bool PrintableName(std::string_view name) {
-  if (name.empty() || name.size() > kMaxNameLength) return false;
-  return std::all_of(name.begin(), name.end(), [](char c) {
-    const auto u = static_cast<unsigned char>(c);
-    return u >= 0x20 && u < 0x7f;
-  });
+/// Fit for a message: printable ASCII, at most 255 bytes.
+bool Printable(std::string_view text) {
+  return text.size() <= kMaxNameLength && std::all_of(text.begin(), text.end(), [](char c) {
+           const auto u = static_cast<unsigned char>(c);
+           return u >= 0x20 && u < 0x7f;
+         });
 }
+
+bool PrintableName(std::string_view name) { return !name.empty() && Printable(name); }
 
 bool Convert(fb::DType from, DType* to) {
   switch (from) {
@@ -171,6 +173,35 @@ Status CheckTensor(const fb::Tensor& t, std::size_t index, const std::uint8_t* d
   return {};
 }
 
+Status CheckJoints(const fb::Network& n) {
+  if (n.joints() == nullptr) return {};
+  const std::int64_t count = n.joints()->size();
+  for (std::int64_t i = 0; i < count; ++i) {
+    const fb::Joint& joint = *n.joints()->Get(static_cast<flatbuffers::uoffset_t>(i));
+    const std::string where = "joint number " + std::to_string(i) + ": ";
+    if (!PrintableName(joint.name()->string_view()))
+      return Bad(where + "name is empty, longer than 255 bytes or not printable");
+    if (joint.parent() < -1 || joint.parent() >= count || joint.parent() == i)
+      return Bad(where + "parent is " + std::to_string(joint.parent()) +
+                 ", expected -1 or another joint's number");
+  }
+  return {};
+}
+
+/// Everything of a network that a message may quote.
+Status CheckTexts(const fb::Network& n) {
+  if (!Printable(n.prefix()->string_view())) return Bad("prefix is too long or not printable");
+  if (const fb::SelfTest* test = n.self_test()) {
+    bool good =
+        Printable(test->output()->string_view()) && Printable(test->output_name()->string_view());
+    for (const auto* names : {test->inputs(), test->input_names()}) {
+      for (const flatbuffers::String* name : *names) good = good && Printable(name->string_view());
+    }
+    if (!good) return Bad("self-test: a name is too long or not printable");
+  }
+  return {};
+}
+
 Status CheckNetworks(const fb::WeightsFile& root) {
   std::vector<std::string_view> names;
   for (const fb::Network* n : *root.networks()) {
@@ -180,6 +211,8 @@ Status CheckNetworks(const fb::WeightsFile& root) {
       return Bad("network " + std::string(name) + ": no configuration");
     if (static_cast<std::uint8_t>(n->config_type()) > static_cast<std::uint8_t>(fb::Config::MAX))
       return Bad("network " + std::string(name) + ": of a kind this version does not know");
+    GESTUS_RETURN_IF_ERROR(CheckJoints(*n).In("network " + std::string(name)));
+    GESTUS_RETURN_IF_ERROR(CheckTexts(*n).In("network " + std::string(name)));
     names.push_back(name);
   }
   if (names.empty()) return Bad("networks: none in the file, expected at least one");

@@ -101,7 +101,12 @@ GESTUS_INLINE void tile_step(TileSum<Arch, R, V>& sum, const float* const (&rows
   }
 }
 
+// Sanitizers instrument every load: unrolled, the tiles would take minutes to compile.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr std::size_t kTileUnroll = 1;
+#else
 constexpr std::size_t kTileUnroll = 8;
+#endif
 
 /// sum += a (R, k) * b (k, V vectors), rows of b `b_stride` apart.  With kAhead,
 /// every kTileUnroll steps ask for one cache line, from `ahead` on.

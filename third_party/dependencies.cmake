@@ -3,7 +3,12 @@
 
 # xsimd 8.1, header only: the SIMD batches of kernels/.  The include path is shared with the system,
 # so the target only proves that the package is there.
-find_package(xsimd 8.1 REQUIRED)
+if(CMAKE_CROSSCOMPILING)
+  # Its CMake package lies below the build machine's architecture; the headers serve every one.
+  find_path(GESTUS_XSIMD_INCLUDE xsimd/xsimd.hpp REQUIRED)
+else()
+  find_package(xsimd 8.1 REQUIRED)
+endif()
 
 # FlatBuffers 2.0.8.  The generated header insists on the exact library version, so it is generated
 # at build time, never committed.

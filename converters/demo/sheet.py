@@ -17,7 +17,9 @@ WIDTH, MARGIN = 1180, 20
 STRIP, WORDS, FIGURE, GAP = 64, 30, 178, 26  # heights: spectrogram, words, figures, between staves
 STEP = 0.4  # seconds between figures
 INK, ACCENT = "#808893", (0x21, 0x96, 0x8f)
-COLOURS = {"body": "#808893", "right": "#e0703a", "left": "#3f83e0"}
+# Of each part of the figure: colour and width.
+STROKES = {"body": (INK, 4), "right": ("#e0703a", 4), "left": ("#3f83e0", 4),
+           "hand": ("#3f83e0", 2)}
 FONT = "system-ui, 'Segoe UI', 'DejaVu Sans', sans-serif"
 
 
@@ -53,7 +55,7 @@ class Sheet:
 
     def render(self, title, subtitle, footer):
         y = 32
-        self._text(MARGIN, y, title, 19, weight=600)
+        self._text(MARGIN, y, title, 16, weight=600)
         self._text(MARGIN, y + 24, subtitle, 14)
         y += 44
         for stave in range(self.staves):
@@ -112,16 +114,20 @@ class Sheet:
         for side, wrist in figure.WRISTS.items():
             trail = self.joints[past : now + 1, wrist] * scale + offset
             self.parts.append(f'<polyline points="{_points(trail)}" fill="none" '
-                              f'stroke="{COLOURS[side]}" stroke-width="1.6" opacity="0.5"/>')
-        for side in ("body", "right", "left"):
-            path = "".join(f"M{_point(points[a])}L{_point(points[b])}"
-                           for a, b, of in figure.BONES if of == side)
-            self.parts.append(f'<path d="{path}" stroke="{COLOURS[side]}" stroke-width="4" '
-                              'stroke-linecap="round" fill="none"/>')
+                              f'stroke="{STROKES[side][0]}" stroke-width="1.6" opacity="0.5"/>')
+        neck = [end * scale + offset for end in figure.neck_of(self.joints[now])]
+        for part, (colour, width) in STROKES.items():
+            lines = [(points[a], points[b]) for a, b, of in figure.BONES if of == part]
+            lines += [neck] if part == "body" else []
+            path = "".join(f"M{_point(a)}L{_point(b)}" for a, b in lines)
+            self.parts.append(f'<path d="{path}" stroke="{colour}" stroke-width="{width}" '
+                              'stroke-linecap="round" stroke-linejoin="round" fill="none"/>')
         centre, radius = figure.head_of(self.joints[now])
         x, y = centre * scale + offset
         self.parts.append(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="{radius * scale:.1f}" '
-                          f'fill="none" stroke="{COLOURS["body"]}" stroke-width="3"/>')
+                          f'fill="none" stroke="{INK}" stroke-width="3"/>')
+        x, y = points[figure.NOSE]
+        self.parts.append(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="2.5"/>')
 
     def _text(self, x, y, text, size, weight=400, anchor="start"):
         self.parts.append(f'<text x="{x}" y="{y}" font-size="{size}" font-weight="{weight}" '

@@ -32,19 +32,22 @@ class Canvas:
         return ["".join(chr(0x2800 + cell) for cell in row) for row in self.cells]
 
 
-def figures(pose, rate, columns=78, count=6, rows=11):
+def figures(pose, rate, columns=78, count=6):
     """`count` poses side by side, at even times, as lines of text with the times below."""
     joints = figure.joints_of(pose)
     width = columns // count
     left, top, right, bottom = figure.extent(joints)
-    scale = min((2 * width - 2) / (right - left), 4 * rows / (bottom - top))
+    scale = (2 * width - 2) / (right - left)
+    rows = int(np.ceil((bottom - top) * scale / 4))
     offset = np.array([width - scale * (left + right) / 2, 2 * rows - scale * (top + bottom) / 2])
     pictures, times = [], []
     for i in np.linspace(0, len(pose) - 1, 2 * count + 1)[1::2].astype(int):
         canvas = Canvas(width, rows)
         points = joints[i] * scale + offset
-        for a, b, _ in figure.BONES:
-            canvas.line(points[a], points[b])
+        for a, b, part in figure.BONES:
+            if part != "hand":  # too fine for dots
+                canvas.line(points[a], points[b])
+        canvas.line(*(end * scale + offset for end in figure.neck_of(joints[i])))
         centre, radius = figure.head_of(joints[i])
         canvas.circle(centre * scale + offset, radius * scale)
         pictures.append(canvas.lines())

@@ -10,8 +10,9 @@ class LinearOp final : public BoundOp {
   explicit LinearOp(const Binding& b) : kernels_(*b.kernels) {
     const Ref& x = b.in[0];
     const Ref* residual = b.node->residual ? &b.in[1] : nullptr;
-    const bool merge = x.tall() && b.out.tall() &&
-                       (residual == nullptr || residual->rows == 1 || residual->tall());
+    const bool repeat = residual != nullptr && residual->rows * residual->batch == 1;
+    const bool merge =
+        x.tall() && b.out.tall() && (residual == nullptr || repeat || residual->tall());
     batch_ = merge ? 1 : x.batch;
     args_.m = merge ? x.batch * x.rows : x.rows;
     args_.n = b.out.cols;
@@ -26,8 +27,8 @@ class LinearOp final : public BoundOp {
     args_.epilogue.alpha = b.node->alpha;
     if (residual != nullptr) {
       args_.epilogue.residual = residual->f32;
-      args_.epilogue.residual_stride = residual->rows == 1 ? 0 : residual->row_stride;
-      residual_batch_stride_ = residual->rows == 1 ? 0 : residual->batch_stride;
+      args_.epilogue.residual_stride = repeat ? 0 : residual->row_stride;
+      residual_batch_stride_ = repeat ? 0 : residual->batch_stride;
     }
     a_batch_stride_ = x.batch_stride;
     out_batch_stride_ = b.out.batch_stride;

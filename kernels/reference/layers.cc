@@ -54,7 +54,9 @@ void softmax(float* y, std::ptrdiff_t y_stride, const float* x, std::ptrdiff_t x
   constexpr double kLowest = -std::numeric_limits<double>::infinity();
   for (std::size_t r = 0; r < rows; ++r) {
     double top = kLowest, sum = 0.0;
-    for (std::size_t j = 0; j < cols; ++j) top = std::fmax(top, at(x, x_stride, r, j));
+    for (std::size_t j = 0; j < cols; ++j) {
+      if (at(x, x_stride, r, j) > top) top = at(x, x_stride, r, j);
+    }
     if (top == kLowest) top = 0.0;
     for (std::size_t j = 0; j < cols; ++j) sum += std::exp(at(x, x_stride, r, j) - top);
     for (std::size_t j = 0; j < cols; ++j) {

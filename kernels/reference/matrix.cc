@@ -52,7 +52,7 @@ void attention(const AttentionArgs& a) {
   };
   for (std::size_t i = 0; i < a.rows; ++i) {
     double top = kLowest;
-    for (std::size_t j = 0; j < a.keys; ++j) top = std::fmax(top, score(i, j));
+    for (std::size_t j = 0; j < a.keys; ++j) top = std::max(top, score(i, j));
     if (top == kLowest) top = 0.0;
     for (std::size_t c0 = 0; c0 < a.value_dim; c0 += kChunk) {
       const std::size_t count = std::min(kChunk, a.value_dim - c0);

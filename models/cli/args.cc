@@ -22,27 +22,26 @@ void AddShared(CLI::App* app, Arguments* a) {
 }
 
 void AddCompute(CLI::App* app, Arguments* a) {
-  app->add_option("--threads", a->threads, "Threads that compute; results do not depend on it")
+  app->add_option("--threads", a->threads,
+                  "Threads that compute, 1 to 64, default 1; results do not depend on it")
       ->type_name("N")
-      ->check(CLI::Range(1, 64))
-      ->capture_default_str();
+      ->check(CLI::Range(1, 64, ""));
   app->add_option("--isa", a->isa, "Instruction set: scalar, sse2, avx2, avx512 or neon")
       ->type_name("NAME");
 }
 
 void AddInfer(CLI::App* app, Arguments* a) {
-  app->add_option("weights", a->weights, "Weights file (.fb)")->type_name("WEIGHTS");
-  app->add_option("input", a->input, "Input arrays (.npz); see infer-cli info WEIGHTS")
-      ->type_name("INPUT.npz");
-  app->add_option("-o,--output", a->output, "Output arrays; default: INPUT.out.npz beside INPUT")
-      ->type_name("OUT.npz");
+  app->add_option("WEIGHTS", a->weights, "Weights file")->type_name("FILE.fb");
+  app->add_option("INPUT", a->input, "Input arrays; infer-cli info WEIGHTS names them")
+      ->type_name("FILE.npz");
+  app->add_option("-o,--output", a->output, "Output arrays; default: INPUT with .out.npz for .npz")
+      ->type_name("FILE.npz");
   app->add_option("--style", a->style, "Style: a .style file, or a clip (.npz) to take it from")
       ->type_name("FILE");
   AddCompute(app, a);
-  app->add_option("--repeat", a->repeat, "Runs of each segment, for timing")
+  app->add_option("--repeat", a->repeat, "Runs of each segment, for timing; default 1")
       ->type_name("N")
-      ->check(CLI::Range(1, 1000000))
-      ->capture_default_str();
+      ->check(CLI::Range(1, 1000000, ""));
   app->add_flag("--profile", a->profile, "Time, GFLOP/s and GB/s of every op");
   app->add_flag("--plan", a->plan, "The planned ops and where the arena keeps their values");
   app->add_flag("--taps", a->taps, "Add named intermediates to the output, as tap/NAME");
@@ -72,16 +71,16 @@ Result<Arguments> ParseArguments(int argc, const char* const* argv) {
   app.add_flag("--version", version, "Version, instruction sets and compiler");
 
   CLI::App* info = app.add_subcommand("info", "Show what a weights file holds, takes and gives");
-  info->add_option("weights", a.weights, "Weights file (.fb)")->type_name("WEIGHTS")->required();
+  info->add_option("WEIGHTS", a.weights, "Weights file")->type_name("FILE.fb")->required();
   info->add_flag("--plan", a.plan, "The planned ops and where the arena keeps their values");
   AddShared(info, &a);
 
   CLI::App* style = app.add_subcommand("style", "Compute a speaker's style from a clip, to reuse");
-  style->add_option("weights", a.weights, "Weights file (.fb)")->type_name("WEIGHTS")->required();
-  style->add_option("clip", a.input, "speech, text and pose of the speaker (.npz)")
-      ->type_name("CLIP.npz")
+  style->add_option("WEIGHTS", a.weights, "Weights file")->type_name("FILE.fb")->required();
+  style->add_option("CLIP", a.input, "speech, text and pose of the speaker (.npz)")
+      ->type_name("FILE.npz")
       ->required();
-  style->add_option("-o,--output", a.output, "The style file")->type_name("OUT.style")->required();
+  style->add_option("-o,--output", a.output, "The style file")->type_name("FILE.style")->required();
   AddCompute(style, &a);
   AddShared(style, &a);
 

@@ -63,7 +63,7 @@ Result<Arrays> RunNetwork(const Arguments& arguments, const Arrays& inputs, Setu
   };
   Result<Arrays> outputs = setup->network->Run(inputs, options, report);
   if (outputs.ok()) return outputs;
-  const std::string& message = outputs.status().message();
+  const std::string message = outputs.status().message();
   const bool from_style =
       !arguments.style.empty() && IsStyleInput(message.substr(0, message.find(':')));
   return outputs.status().In(from_style ? arguments.style : arguments.input);

@@ -64,8 +64,9 @@ std::string SpecShape(const ArraySpec& spec) {
 std::string SpecsText(const std::vector<ArraySpec>& specs) {
   std::vector<std::vector<std::string>> rows;
   for (const ArraySpec& spec : specs) {
-    rows.push_back({spec.name + (spec.required ? "" : " (optional)"), NumpyName(spec.dtype),
-                    SpecShape(spec), spec.unit, spec.meaning});
+    const std::string unit = spec.unit.empty() || spec.unit == "-" ? "" : " [" + spec.unit + "]";
+    rows.push_back({spec.name, NumpyName(spec.dtype), SpecShape(spec),
+                    spec.required ? "" : "optional", spec.meaning + unit});
   }
   return Table(rows, {}, "    ");
 }

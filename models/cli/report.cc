@@ -1,7 +1,6 @@
 #include "models/cli/report.h"
 
 #include <algorithm>
-#include <numeric>
 
 #include "models/cli/json.h"
 #include "models/cli/npy.h"
@@ -86,7 +85,7 @@ Timing Summarise(const models::RunReport& report, int repeat) {
   timing.segments = seconds.size() / static_cast<std::size_t>(std::max(repeat, 1));
   timing.median = seconds[seconds.size() / 2];
   timing.p99 = seconds[std::min(seconds.size() - 1, seconds.size() * 99 / 100)];
-  const double once = std::accumulate(seconds.begin(), seconds.end(), 0.0) / repeat;
+  const double once = timing.median * static_cast<double>(timing.segments);
   if (once > 0 && report.frame_rate > 0) {
     timing.times_real_time = static_cast<double>(report.frames) / report.frame_rate / once;
   }

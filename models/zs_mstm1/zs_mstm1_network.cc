@@ -184,6 +184,10 @@ Result<Arrays> ZsMstm1Network::Run(const Arrays& inputs, const RunOptions& optio
   Progress progress;
   progress.total = Windows(Frames(inputs, "style_speech"), c.frames).size() +
                    Windows(Frames(inputs, "speech"), c.WindowFrames()).size();
+  if (report != nullptr) {
+    report->frames = static_cast<std::size_t>(Frames(inputs, "speech"));
+    report->frame_rate = c.frame_rate;
+  }
   GESTUS_RETURN_IF_ERROR(RunStyle(inputs, options, report, **agent, progress));
   Arrays outputs;
   Array style = MakeArray({c.StyleWidth()});
@@ -198,10 +202,6 @@ Result<Arrays> ZsMstm1Network::Run(const Arrays& inputs, const RunOptions& optio
     if (*speaks) CopyTaps((*agent)->generator_session(), &outputs);
   }
   AddProfiles({&(*agent)->style_session(), &(*agent)->generator_session()}, report);
-  if (report != nullptr) {
-    report->frames = static_cast<std::size_t>(Frames(inputs, "speech"));
-    report->frame_rate = c.frame_rate;
-  }
   return outputs;
 }
 

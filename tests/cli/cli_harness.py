@@ -8,9 +8,11 @@ import unittest
 
 import numpy as np
 
-INFER_CLI = sys.argv.pop(1) if len(sys.argv) > 1 else "infer-cli"
-GOLDENS = sys.argv.pop(1) if len(sys.argv) > 1 else "goldens"
+INFER_CLI = os.path.abspath(sys.argv.pop(1))
+GOLDENS = os.path.abspath(sys.argv.pop(1))
 CASE = "frame_autoregressive"
+INPUTS = ("speech", "text", "style_speech", "style_text", "style_pose")
+OUTPUTS = ("pose", "style")
 
 
 def golden(name):
@@ -27,14 +29,9 @@ class CliTest(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.folder = folder.name
-        self.inputs, self.expected = {}, {}
         with np.load(golden(CASE + ".npz")) as arrays:
-            for name in arrays.files:
-                kind, _, rest = name.partition("/")
-                if kind == "input":
-                    self.inputs[rest] = arrays[name]
-                elif kind == "output":
-                    self.expected[rest] = arrays[name]
+            self.inputs = {name: arrays[name] for name in INPUTS}
+            self.expected = {name: arrays[name] for name in OUTPUTS}
         self.input = self.save("input.npz", self.inputs)
 
     def path(self, name):

@@ -5,14 +5,17 @@ cli_test.py INFER_CLI GOLDENS [unittest arguments]
 
 import json
 import os
+import pty
+import subprocess
 import unittest
 
 import numpy as np
 
-from cli_harness import CASE, CliTest, golden
+from cli_harness import INFER_CLI, CliTest, golden
 
 
-class InferTest(CliTest):
+class RunTest(CliTest):
+    """What tests of runs need beside."""
 
     def load(self, name):
         with np.load(self.path(name)) as arrays:
@@ -24,6 +27,9 @@ class InferTest(CliTest):
 
     def assert_close(self, got, want):
         np.testing.assert_allclose(got, want, rtol=0, atol=1e-4 * np.abs(want).max())
+
+
+class InferTest(RunTest):
 
     def test_output_agrees_with_pytorch(self):
         text = self.good(self.WEIGHTS, "input.npz", "-o", "motion.npz")
@@ -100,6 +106,27 @@ class InferTest(CliTest):
         for word in ("p99", "GFLOP/s", "linear", "generator"):
             self.assertIn(word, text)
 
+    def test_progress_on_a_terminal(self):
+        arrays = {k: np.tile(v, (40, 1)) if k in ("speech", "text") else v
+                  for k, v in self.inputs.items()}
+        self.save("long.npz", arrays)
+        ours, theirs = pty.openpty()
+        with subprocess.Popen([INFER_CLI, self.WEIGHTS, "long.npz", "--repeat", "1000"],
+                              cwd=self.folder, stdout=subprocess.DEVNULL, stderr=theirs,
+                              env={**os.environ, "TERM": "xterm"}) as process:
+            os.close(theirs)
+            shown = b""
+            try:
+                while chunk := os.read(ours, 4096):
+                    shown += chunk
+            except OSError:  # how Linux says that the other side of a terminal is gone
+                pass
+        os.close(ours)
+        self.assertEqual(process.returncode, 0)
+        for word in (b"of 41 segments", b"times real time", b"s left"):
+            self.assertIn(word, shown)
+        self.assertTrue(shown.endswith(b"\r\x1b[K"), shown[-100:])
+
     def test_taps(self):
         self.good(self.WEIGHTS, "input.npz", "-o", "out.npz", "--taps")
         taps = [name for name in self.load("out.npz") if name.startswith("tap/")]
@@ -112,13 +139,13 @@ class InferTest(CliTest):
 
     def test_ast_alone_takes_a_bare_npy(self):
         with np.load(golden("ast_cls.npz")) as arrays:
-            np.save(self.path("speech.npy"), arrays["input/speech"])
-            want = arrays["output/embedding"]
+            np.save(self.path("speech.npy"), arrays["speech"])
+            want = arrays["embedding"].reshape(1, -1)
         self.good(self.AST_WEIGHTS, "speech.npy")
         self.assert_close(self.load("speech.out.npz")["embedding"], want)
 
 
-class StyleTest(InferTest):
+class StyleTest(RunTest):
 
     def setUp(self):
         super().setUp()
@@ -175,8 +202,9 @@ class InfoTest(CliTest):
         for name in sorted(os.listdir(os.path.dirname(self.WEIGHTS))):
             if name.endswith(".fb"):
                 info = json.loads(self.good("info", golden(name), "--json"))
-                self.assertIn("ln_eps" if name.startswith("ast_") and "separate" not in name
-                              else "decoder_mode", info["networks"][0]["configuration"], name)
+                network = info["networks"][0]
+                self.assertIn("ln_eps" if network["kind"] == "AST" else "decoder_mode",
+                              network["configuration"], name)
 
     def test_help_and_version(self):
         self.assertIn("Exit codes", self.good("--help"))

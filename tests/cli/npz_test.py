@@ -16,7 +16,7 @@ import numpy as np
 import malformed_npz
 import zip_maker
 
-PROBE = sys.argv.pop(1) if len(sys.argv) > 1 else "npz_probe"
+PROBE = os.path.abspath(sys.argv.pop(1))
 SANITIZED = os.environ.get("GESTUS_SANITIZED") == "1"
 SEED = 20240611
 

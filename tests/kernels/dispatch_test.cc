@@ -49,9 +49,9 @@ TEST(DispatchTest, AllThreadsGetTheSameTable) {
   for (const KernelTable* table : seen) EXPECT_EQ(table, &kernels::BestTable());
 }
 
-// The choice is made once per process, so each value is tried in a child of its own.
+// The choice is made once per process, so each value is tried in a child of its own.  GoogleTest runs
+// suites named DeathTest first, when this process has not chosen yet.
 TEST(DispatchDeathTest, EnvironmentLowersTheChoice) {
-  GTEST_FLAG_SET(death_test_style, "threadsafe");
   const auto exit_if = [](const char* value, Isa want) {
     setenv("GESTUS_ISA", value, 1);
     std::exit(kernels::BestTable().isa == want ? 0 : 1);

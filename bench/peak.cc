@@ -1,0 +1,115 @@
+// Calls the probes of peak_probe.cc and keeps the best of several runs.
+#include "bench/peak.h"
+
+#include <omp.h>
+
+#include <algorithm>
+#include <chrono>
+#include <vector>
+
+namespace gestus::bench {
+namespace {
+
+using kernels::Isa;
+
+struct Probe {
+  double (*fma)(std::size_t repeat, float* sink);
+  void (*read)(const float* p, std::size_t n, float* sink);
+};
+
+}  // namespace
+
+#define GESTUS_DECLARE_PROBE(isa)                         \
+  double FmaProbe_##isa(std::size_t repeat, float* sink); \
+  void ReadProbe_##isa(const float* p, std::size_t n, float* sink);
+GESTUS_DECLARE_PROBE(sse2)
+GESTUS_DECLARE_PROBE(avx2)
+GESTUS_DECLARE_PROBE(avx512)
+GESTUS_DECLARE_PROBE(neon)
+#undef GESTUS_DECLARE_PROBE
+
+namespace {
+
+Probe ProbeFor(Isa isa) {
+  switch (isa) {
+#ifdef GESTUS_HAVE_SSE2
+    case Isa::kSse2:
+      return {FmaProbe_sse2, ReadProbe_sse2};
+#endif
+#ifdef GESTUS_HAVE_AVX2
+    case Isa::kAvx2:
+      return {FmaProbe_avx2, ReadProbe_avx2};
+#endif
+#ifdef GESTUS_HAVE_AVX512
+    case Isa::kAvx512:
+      return {FmaProbe_avx512, ReadProbe_avx512};
+#endif
+#ifdef GESTUS_HAVE_NEON
+    case Isa::kNeon:
+      return {FmaProbe_neon, ReadProbe_neon};
+#endif
+    default:
+      return {nullptr, nullptr};
+  }
+}
+
+double Seconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+constexpr std::size_t kRepeat = 50000;
+constexpr int kRuns = 9;
+
+double Best(double (*fma)(std::size_t, float*)) {
+  double best = 0.0;
+  float sink;
+  for (int run = 0; run < kRuns; ++run) {
+    const double start = Seconds();
+    const double flops = fma(kRepeat, &sink);
+    best = std::max(best, flops / (Seconds() - start) * 1e-9);
+  }
+  return best;
+}
+
+}  // namespace
+
+double PeakGflops(Isa isa) {
+  const Probe probe = ProbeFor(isa);
+  return probe.fma != nullptr ? Best(probe.fma) : 0.0;
+}
+
+double PeakGflopsAllCores(Isa isa) {
+  const Probe probe = ProbeFor(isa);
+  if (probe.fma == nullptr) return 0.0;
+  double best = 0.0;
+  for (int run = 0; run < kRuns; ++run) {
+    double flops = 0.0, start = 0.0;
+#pragma omp parallel reduction(+ : flops)
+    {
+#pragma omp barrier
+#pragma omp master
+      start = Seconds();
+      float sink;
+      flops += probe.fma(4 * kRepeat, &sink);
+    }
+    best = std::max(best, flops / (Seconds() - start) * 1e-9);
+  }
+  return best;
+}
+
+double ReadGbps(Isa isa, std::size_t bytes) {
+  const Probe probe = ProbeFor(isa);
+  if (probe.read == nullptr) return 0.0;
+  const std::vector<float> data(bytes / sizeof(float), 1.0f);
+  const std::size_t passes = std::max<std::size_t>(1, (std::size_t{1} << 24) / bytes);
+  double best = 0.0;
+  float sink;
+  for (int run = 0; run < kRuns; ++run) {
+    const double start = Seconds();
+    for (std::size_t pass = 0; pass < passes; ++pass) probe.read(data.data(), data.size(), &sink);
+    best = std::max(best, static_cast<double>(bytes * passes) / (Seconds() - start) * 1e-9);
+  }
+  return best;
+}
+
+}  // namespace gestus::bench

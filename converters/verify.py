@@ -1,0 +1,75 @@
+"""Compares the engine with PyTorch, layer by layer, on one seeded input."""
+
+import os
+import subprocess
+import tempfile
+
+import numpy as np
+
+from . import networks, shapes, weights_file
+from .checkpoint import read_checkpoint
+from .errors import ConvertError
+from .export import checkpoint_tensors
+
+
+def verify(options):
+    """Prints a table of relative errors; 1 when a value is further off than the tolerance."""
+    from .reference.run import build, run
+    file = weights_file.read(options.weights)
+    if len(file.networks) != 1:
+        raise ConvertError(f"{options.weights}: {len(file.networks)} networks, expected one")
+    network = file.networks[0]
+    if options.checkpoint:
+        tensors = checkpoint_tensors(read_checkpoint(options.checkpoint), network,
+                                     options.ast and read_checkpoint(options.ast))
+    else:
+        wanted = shapes.network_shapes(network)
+        tensors = {key: x for key, x in file.network_tensors(network).items() if key in wanted}
+    inputs = networks.random_inputs(network, options.seed)
+    got = run_engine(options.infer_cli, options.weights, inputs)
+    want = run(build(network, tensors), inputs, taps=True)
+    rows = compare(got, want)
+    width = max(len(name) for name, *_ in rows)
+    print(f"{'value':{width}}  {'shape':>14}  relative error")
+    for name, shape, error in rows:
+        print(f"{name:{width}}  {shape!s:>14}  {error:.2e}")
+    if not any(name in ("pose", "embedding") for name, *_ in rows):
+        raise ConvertError(f"{options.infer_cli}: gave no output that could be compared")
+    failed = [row for row in rows if not row[2] <= options.tolerance]
+    for name, _, error in failed:
+        print(f"{name}: relative error {error:.2e}, expected at most {options.tolerance:g}")
+    return 1 if failed else 0
+
+
+def run_engine(infer_cli, weights, inputs):
+    """Arrays that infer-cli makes of `inputs`, intermediates included."""
+    with tempfile.TemporaryDirectory() as folder:
+        source, target = os.path.join(folder, "input.npz"), os.path.join(folder, "output.npz")
+        np.savez(source, **inputs)
+        command = [infer_cli, weights, source, "-o", target, "--taps"]
+        try:
+            done = subprocess.run(command, capture_output=True, text=True, check=False)
+        except OSError as error:
+            raise ConvertError(f"{infer_cli}: {error.strerror}") from None
+        if done.returncode != 0:
+            raise ConvertError(f"{infer_cli}: exit code {done.returncode}: "
+                               + done.stderr.strip()[:200])
+        with np.load(target, allow_pickle=False) as arrays:
+            return {name: arrays[name] for name in arrays.files}
+
+
+def compare(got, want):
+    """(name, shape, max |got - want| / max |want|) of every value that both have, taps first, in
+    the order of execution."""
+    order = [*[n for n in want if n.startswith("tap/")],
+             *[n for n in want if not n.startswith("tap/")]]
+    return [(name, got[name].shape, relative_error(got[name], want[name]))
+            for name in order if name in got]
+
+
+def relative_error(got, want):
+    if got.size != want.size:
+        return float("inf")
+    difference = np.abs(got.reshape(want.shape).astype(np.float64) - want)
+    largest = np.abs(want).max()
+    return float(difference.max() / largest) if largest > 0 else float(difference.max())
