@@ -9,6 +9,7 @@ import io
 import math
 import os
 import pickle
+import struct
 import zipfile
 from typing import NamedTuple
 
@@ -63,25 +64,34 @@ _STORAGES = {name + "Storage": StorageType(name, dtype) for name, dtype in {
 
 def read_checkpoint(path):
     """The tensors of the state_dict in `path`; refuses what is damaged, unusual or hostile."""
-    try:
-        with open(path, "rb") as file:
-            start = file.read(len(LEGACY_MAGIC))
-        if start == LEGACY_MAGIC:
+    with open(path, "rb") as file:
+        if file.read(len(LEGACY_MAGIC)) == LEGACY_MAGIC:
             raise ConvertError(f"{path}: written by torch.save before PyTorch 1.6, expected its zip "
                                "format; load and save it again with a newer PyTorch")
-        with zipfile.ZipFile(path) as archive:
-            members, prefix = _members(path, archive)
-            root = _unpickle(path, archive.read(members[prefix + "data.pkl"]), members, prefix)
-            tensors = _state_dict(path, root)
-            loader = _Loader(path, archive, members)
-            return Checkpoint(path, {key: loader.array(key, t) for key, t in tensors.items()})
-    except (zipfile.BadZipFile, EOFError, NotImplementedError, RuntimeError) as error:
-        raise ConvertError(f"{path}: no checkpoint of torch.save or damaged: {error}") from None
+        try:
+            with zipfile.ZipFile(file) as archive:
+                return _read_archive(path, archive)
+        # What zipfile raises for archives that are damaged, encrypted or made to confuse it.
+        except (zipfile.BadZipFile, EOFError, NotImplementedError, OSError, RuntimeError,
+                ValueError, struct.error) as error:
+            raise ConvertError(f"{path}: no checkpoint of torch.save or damaged: "
+                               f"{error}") from None
+
+
+def _read_archive(path, archive):
+    members, prefix = _members(path, archive)
+    root = _unpickle(path, archive.read(members[prefix + "data.pkl"]), members, prefix)
+    loader = _Loader(path, archive, members)
+    return Checkpoint(path, {key: loader.array(key, tensor)
+                             for key, tensor in _state_dict(path, root).items()})
 
 
 def _members(path, archive):
     """Members by name and the folder that all of them are in; every size is proven by the file's."""
     members, total = {}, 0
+    if any(name.split("/")[-1] == "constants.pkl" for name in archive.namelist()):
+        raise ConvertError(f"{path}: a TorchScript archive, expected a checkpoint with the "
+                           "state_dict")
     for info in archive.infolist():
         if info.filename in members:
             raise ConvertError(f"{path}: member {info.filename} is there twice")
@@ -97,9 +107,6 @@ def _members(path, archive):
         raise ConvertError(f"{path}: {len(pickles)} members data.pkl, expected one as in a "
                            "checkpoint of torch.save")
     prefix = pickles[0][:-len("data.pkl")]
-    if prefix + "constants.pkl" in members:
-        raise ConvertError(f"{path}: a TorchScript archive, expected a checkpoint with the "
-                           "state_dict")
     order = members.get(prefix + "byteorder")
     if order is not None and archive.read(order).strip() != b"little":
         raise ConvertError(f"{path}: written on a big-endian machine, expected little endian")

@@ -20,15 +20,17 @@ template <class Arch>
 using Batch = xsimd::batch<float, Arch>;
 
 /// Shape of the register tile: as many accumulators as the register file holds beside a row of b
-/// and one element of a.  6 x 2 of 16 registers (SSE2, AVX2), 14 x 2 of AVX-512's 32, and 6 x 4 of
-/// NEON's 32, whose vectors are short.
+/// and one element of a.  AVX2: 6 x 2 of 16 registers; AVX-512: 14 x 2 of 32; NEON, whose vectors
+/// are short: 6 x 4 of 32.  SSE2 multiplies in place and has no fused multiply-add, so each product
+/// takes a copy: it is measured to be fastest with few rows, 2 x 4.
 template <class Arch>
 struct GemmTile {
   static constexpr std::size_t kWidth = Batch<Arch>::size;
 #if defined(__aarch64__)
   static constexpr std::size_t kRows = 6, kVectors = 4;
 #else
-  static constexpr std::size_t kRows = kWidth == 16 ? 14 : 6, kVectors = 2;
+  static constexpr std::size_t kRows = kWidth == 16 ? 14 : kWidth == 8 ? 6 : 2;
+  static constexpr std::size_t kVectors = kWidth == 4 ? 4 : 2;
 #endif
   static constexpr std::size_t kColumns = kVectors * kWidth;
 };
@@ -69,12 +71,11 @@ GESTUS_INLINE void prefetch(std::uintptr_t address) {
 template <class Arch>
 GESTUS_INLINE void keep_alive(const Batch<Arch>& x) {
 #if defined(__x86_64__)
-  asm volatile("" ::"v"(x.data));
+  if constexpr (Batch<Arch>::size > 4) asm volatile("" ::"v"(x.data));  // no such choice in SSE2
 #elif defined(__aarch64__)
   asm volatile("" ::"w"(x.data));
-#else
-  (void)x;
 #endif
+  (void)x;
 }
 
 /// sum[r][:] += rows[r][k] * b[:]

@@ -81,18 +81,18 @@ template <class Arch>
 [[gnu::always_inline]] inline xsimd::batch<float, Arch> verf(const xsimd::batch<float, Arch>& x) {
   const xsimd::batch<float, Arch> u = x * x;
   return saturating_odd(x, 3.92f,
-                        polynomial(u, 1.12837915f, 0.190407641f, 0.0527488702f, 0.00376566519f,
-                                   2.84883491e-4f, 2.05007422e-6f),
-                        polynomial(u, 1.0f, 0.502077119f, 0.11410959f, 0.0149693131f,
-                                   1.16254661e-3f, 3.80916192e-5f));
+                        polynomial(u, 1.12837911f, 0.190407619f, 0.0527488701f, 0.00376566523f,
+                                   2.84883456e-4f, 2.050077e-6f),
+                        polynomial(u, 1.0f, 0.502077103f, 0.114109576f, 0.0149693154f,
+                                   1.16254645e-3f, 3.80916244e-5f));
 }
 
 template <class Arch>
 [[gnu::always_inline]] inline xsimd::batch<float, Arch> vtanh(const xsimd::batch<float, Arch>& x) {
   const xsimd::batch<float, Arch> u = x * x;
   return saturating_odd(
-      x, 9.01f, polynomial(u, 1.0f, 0.133797229f, 3.49404043e-3f, 2.05835741e-5f, 1.3319193e-8f),
-      polynomial(u, 1.0f, 0.467130382f, 0.0258710957f, 3.28310228e-4f, 7.76207062e-7f));
+      x, 9.01f, polynomial(u, 1.0f, 0.133797228f, 3.49404104e-3f, 2.0583564e-5f, 1.33192195e-8f),
+      polynomial(u, 1.0f, 0.467130393f, 0.0258710962f, 3.28310241e-4f, 7.7620706e-7f));
 }
 
 /// 1 / (1 + e^-x): the exponential keeps the relative error of the far negative side small.

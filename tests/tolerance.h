@@ -35,7 +35,8 @@ inline double GemmTolerance(std::size_t k, double max_a, double max_b) {
   return kEps * static_cast<double>(k) * max_a * max_b;
 }
 
-/// Error of an activation whose argument x is exact: the table of the functions.
+/// Error of an activation whose argument x is exact: the table of the functions.  An ULP counts as
+/// eps |y| here, its size at the bottom of a binade (at the top, two floats).
 inline double ActivationTolerance(kernels::Activation act, double x, double y) {
   using kernels::Activation;
   const double ulp = kEps * std::fabs(y);

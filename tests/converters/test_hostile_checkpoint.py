@@ -126,9 +126,10 @@ MALFORMED = {
     "memo_huge": (b"Nr\xff\xff\xff\x7f.", FOUR, "NoneType"),
     "long_text": (b"\x8d" + struct.pack("<Q", HUGE) + b"x.", FOUR, "damaged"),
     "recursive": (b"\x80\x02}q\x00" + text("x") + b"h\x00s.", FOUR, "nested"),
-    "laughs": (b"\x80\x02}" + text("x") + b"]q\x00" + b"".join(
-        b"](" + b"h" + bytes([n]) + b"h" + bytes([n]) + b"eq" + bytes([n + 1])
-        for n in range(60)) + b"s.", FOUR, "nested"),
+    "laughs": (b"\x80\x02]q\x000" + b"".join(
+        b"](h" + bytes([n]) + b"h" + bytes([n]) + b"eq" + bytes([n + 1]) + b"0"
+        for n in range(12)) + b"}" + text("x") + b"h\x0cs" + text("y") + b"h\x0cs" + b"".join(
+        text(str(i)) + b"h\x0cs" for i in range(300)) + b".", FOUR, "nested"),
     "big_endian": (one_tensor(), {**FOUR, "archive/byteorder": b"big"}, "big-endian"),
     "two_pickles": (one_tensor(), {**FOUR, "other/data.pkl": one_tensor()}, "2 members data.pkl"),
 }

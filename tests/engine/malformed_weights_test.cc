@@ -208,13 +208,13 @@ void AddMetadataCases(Cases* cases) {
            WithNetwork([](NetworkSpec* n) { n->prefix = "a\nb"; })},
           {"PrefixTooLong", "network net: prefix",
            WithNetwork([](NetworkSpec* n) { n->prefix = std::string(1 << 20, 'p'); })},
-          {"NoConfiguration", "network net: no configuration", WithNetwork([](NetworkSpec* n) {
+          {"NoConfiguration", kNoBuffer, WithNetwork([](NetworkSpec* n) {
              n->type = fb::Config::NONE;
              n->without_config = true;
            })},
           {"ConfigurationOfNoType", "network net: no configuration",
            WithNetwork([](NetworkSpec* n) { n->type = fb::Config::NONE; })},
-          {"ConfigurationTypeOnly", "",
+          {"ConfigurationTypeOnly", kNoBuffer,
            WithNetwork([](NetworkSpec* n) { n->without_config = true; })},
           {"ConfigurationUnknown", "network net: of a kind this version does not know",
            WithNetwork([](NetworkSpec* n) { n->type = static_cast<fb::Config>(77); })},
@@ -411,7 +411,7 @@ TEST(NoWeightsFileTest, OneByte) {
 }
 TEST(NoWeightsFileTest, Fifo) {
   // Opening one for reading would wait for a writer.
-  const std::string path = testing::TempDir() + "/gestus_fifo_" + std::to_string(getpid());
+  const std::string path = testing::TempDir() + "gestus_fifo_" + std::to_string(getpid());
   ASSERT_EQ(mkfifo(path.c_str(), 0600), 0);
   ExpectRefused(path, Code::kBadWeights, "not a regular file");
   unlink(path.c_str());

@@ -15,7 +15,7 @@ namespace gestus::test {
 class TempFile {
  public:
   explicit TempFile(const std::vector<std::uint8_t>& content)
-      : path_(testing::TempDir() + "/gestus_XXXXXX") {
+      : path_(testing::TempDir() + "gestus_XXXXXX") {
     const int fd = mkstemp(path_.data());
     EXPECT_GE(fd, 0);
     EXPECT_EQ(write(fd, content.data(), content.size()), static_cast<ssize_t>(content.size()));

@@ -1,0 +1,21 @@
+#!/bin/bash
+# No system call between the two getppid() calls of steady_state with one thread; with two threads
+# only those by which they wait for each other.  Exit 77 (skipped) where tracing is not to be had.
+# Usage: no_syscalls.sh STEADY_STATE WEIGHTS THREADS REPEATS ALLOWED
+set -euo pipefail
+program=$1 weights=$2 threads=$3 repeats=$4 allowed=$5
+command -v strace >/dev/null || { echo "skipped: no strace"; exit 77; }
+strace -o /dev/null true 2>/dev/null || { echo "skipped: tracing is not permitted"; exit 77; }
+log=$(mktemp)
+trap 'rm -f "$log"' EXIT
+strace -f -qq -o "$log" "$program" "$weights" "$threads" "$repeats"
+found=$(awk -v allowed="$allowed" '
+  / getppid\(/ { ++marks; next }
+  marks == 1 && !(allowed != "" && $0 ~ allowed) { print }' "$log")
+[[ $(grep -c ' getppid(' "$log") -eq 2 ]] || { echo "the two marks are missing"; exit 1; }
+if [[ -n $found ]]; then
+  echo "system calls in the steady state:"
+  head -n 5 <<<"$found"
+  exit 1
+fi
+echo "$repeats runs with $threads thread(s): none${allowed:+ but $allowed}"

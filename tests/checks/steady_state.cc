@@ -1,0 +1,146 @@
+// Runs a model in its steady state with every allocation, lock, mapping, write and throw of the
+// process intercepted: there must be none.
+//
+//   steady_state WEIGHTS THREADS REPEATS [--plant]
+//
+// The runs lie between two getppid() calls, so that a tracer can tell the system calls among them.
+// --plant allocates once in the middle, to show that the check can fail.
+#include <dlfcn.h>
+#include <pthread.h>
+#include <sys/mman.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <new>
+#include <vector>
+
+#include "models/zs_mstm1/zs_mstm1.h"
+
+namespace {
+
+std::atomic<bool> armed{false};
+std::atomic<long> caught{0};
+std::atomic<const char*> first_caught{nullptr};
+
+void Note(const char* what) {
+  if (!armed.load(std::memory_order_relaxed)) return;
+  const char* none = nullptr;
+  first_caught.compare_exchange_strong(none, what);
+  caught.fetch_add(1);
+}
+
+template <class Function>
+Function Next(const char* name) {
+  return reinterpret_cast<Function>(dlsym(RTLD_NEXT, name));
+}
+
+}  // namespace
+
+// Visible to the shared libraries of the process, whose calls count as well.
+#pragma GCC visibility push(default)
+extern "C" {
+
+void* __libc_malloc(std::size_t);
+void* __libc_calloc(std::size_t, std::size_t);
+void* __libc_realloc(void*, std::size_t);
+void* __libc_memalign(std::size_t, std::size_t);
+void __libc_free(void*);
+
+void* malloc(std::size_t n) {
+  Note("malloc");
+  return __libc_malloc(n);
+}
+void* calloc(std::size_t n, std::size_t m) {
+  Note("calloc");
+  return __libc_calloc(n, m);
+}
+void* realloc(void* p, std::size_t n) {
+  Note("realloc");
+  return __libc_realloc(p, n);
+}
+void* aligned_alloc(std::size_t a, std::size_t n) {
+  Note("aligned_alloc");
+  return __libc_memalign(a, n);
+}
+void free(void* p) {
+  Note("free");
+  __libc_free(p);
+}
+
+int pthread_mutex_lock(pthread_mutex_t* m) noexcept {
+  Note("pthread_mutex_lock");
+  static const auto next = Next<int (*)(pthread_mutex_t*)>("pthread_mutex_lock");
+  return next(m);
+}
+int pthread_rwlock_rdlock(pthread_rwlock_t* m) noexcept {
+  Note("pthread_rwlock_rdlock");
+  static const auto next = Next<int (*)(pthread_rwlock_t*)>("pthread_rwlock_rdlock");
+  return next(m);
+}
+int pthread_cond_wait(pthread_cond_t* c, pthread_mutex_t* m) {
+  Note("pthread_cond_wait");
+  static const auto next = Next<int (*)(pthread_cond_t*, pthread_mutex_t*)>("pthread_cond_wait");
+  return next(c, m);
+}
+void* mmap(void* at, std::size_t n, int protection, int flags, int fd, off_t offset) noexcept {
+  Note("mmap");
+  return reinterpret_cast<void*>(syscall(SYS_mmap, at, n, protection, flags, fd, offset));
+}
+int munmap(void* at, std::size_t n) noexcept {
+  Note("munmap");
+  return static_cast<int>(syscall(SYS_munmap, at, n));
+}
+ssize_t write(int fd, const void* data, std::size_t n) {
+  Note("write");
+  return syscall(SYS_write, fd, data, n);
+}
+[[noreturn]] void __cxa_throw(void* object, void* type, void (*destroy)(void*)) {
+  Note("__cxa_throw");
+  static const auto next = Next<void (*)(void*, void*, void (*)(void*))>("__cxa_throw");
+  next(object, type, destroy);
+  std::abort();
+}
+
+}  // extern "C"
+#pragma GCC visibility pop
+
+int main(int argc, char** argv) {
+  using namespace gestus;
+  using namespace gestus::models;
+  if (argc < 4) return 2;
+  const int threads = std::atoi(argv[2]), repeats = std::atoi(argv[3]);
+  const bool plant = argc > 4 && std::strcmp(argv[4], "--plant") == 0;
+  const auto file = WeightsFile::Open(argv[1]);
+  if (!file.ok()) return std::fprintf(stderr, "%s\n", file.status().message().c_str()), 2;
+  const auto model = ZsMstm1::Make(*file, "");
+  if (!model.ok()) return std::fprintf(stderr, "%s\n", model.status().message().c_str()), 2;
+  const auto agent = ZsMstm1::NewAgent(*model, {.threads = threads});
+  if (!agent.ok()) return std::fprintf(stderr, "%s\n", agent.status().message().c_str()), 2;
+  const ZsMstm1Config& c = (*model)->config();
+  const auto values = [&](std::int64_t cols) {
+    return std::vector<float>(static_cast<std::size_t>(c.WindowFrames() * cols), 0.5f);
+  };
+  const auto speech = values(c.ast_content.mel_bins), text = values(c.d_text);
+  auto pose = values(c.d_pose);
+  const auto run = [&] {
+    (*agent)->AddStyleSegment(speech.data(), text.data(), pose.data());
+    (*agent)->Generate(speech.data(), text.data(), pose.data());
+  };
+
+  for (int i = 0; i < 10; ++i) run();
+  syscall(SYS_getppid);
+  armed = true;
+  for (int i = 0; i < repeats; ++i) {
+    run();
+    if (plant && i == repeats / 2) std::vector<float>(pose).swap(pose);
+  }
+  armed = false;
+  syscall(SYS_getppid);
+  std::printf("%d runs, %d threads: %ld calls intercepted%s%s\n", repeats, threads, caught.load(),
+              caught != 0 ? ", first " : "", caught != 0 ? first_caught.load() : "");
+  return caught == 0 ? 0 : 1;
+}

@@ -1,0 +1,368 @@
+// Runs: the same bytes for any number of threads and sessions, the host's state untouched, nothing
+// left behind.
+#include "engine/session.h"
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cfenv>
+#include <chrono>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <thread>
+
+#include "engine/denormals.h"
+#include "engine/thread_pool.h"
+#include "tests/engine/every_op.h"
+#include "tests/engine/isa_test.h"
+
+#if defined(__SSE2__)
+#include <xmmintrin.h>
+#endif
+
+namespace gestus::test {
+namespace {
+
+#if defined(__SANITIZE_THREAD__)
+constexpr bool kThreadSanitizer = true;
+#else
+constexpr bool kThreadSanitizer = false;
+#endif
+
+std::unique_ptr<Session> MakeSession(const Model& model, const SessionOptions& options = {}) {
+  auto session = Session::Create(model.plan, options);
+  EXPECT_TRUE(session.ok()) << session.status().message();
+  return session.ok() ? *std::move(session) : nullptr;
+}
+
+std::vector<float> RunOn(Session& session, std::uint32_t seed) {
+  FillEveryOp(session, seed);
+  session.Run();
+  return AllOutputs(session);
+}
+
+::testing::AssertionResult SameBytes(const std::vector<float>& a, const std::vector<float>& b) {
+  if (a.size() != b.size()) return ::testing::AssertionFailure() << "sizes differ";
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    if (std::memcmp(&a[i], &b[i], sizeof(float)) != 0)
+      return ::testing::AssertionFailure() << "element " << i << ": " << a[i] << " and " << b[i];
+  }
+  return ::testing::AssertionSuccess();
+}
+
+class SessionTest : public IsaTest {};
+GESTUS_TEST_ON_EVERY_ISA(SessionTest);
+
+TEST_P(SessionTest, TheSameBytesForAnyNumberOfThreads) {
+  const Model model = MakeEveryOp(*table_);
+  const auto alone = MakeSession(model);
+  for (const int threads : {1, 2, 3, 4, 8}) {
+    const auto session = MakeSession(model, {.threads = threads});
+    for (std::uint32_t run = 0; run < 5; ++run)
+      ASSERT_TRUE(SameBytes(RunOn(*session, run), RunOn(*alone, run))) << threads << " threads";
+  }
+}
+
+TEST_P(SessionTest, TheSameBytesInEveryRunAndWithAProfile) {
+  const Model model = MakeEveryOp(*table_);
+  const auto plain = MakeSession(model), profiled = MakeSession(model, {.profile = true});
+  const std::vector<float> first = RunOn(*plain, 1);
+  RunOn(*plain, 2);
+  EXPECT_TRUE(SameBytes(RunOn(*plain, 1), first));
+  EXPECT_TRUE(SameBytes(RunOn(*profiled, 1), first));
+}
+
+TEST_P(SessionTest, InputsKeepTheirContentOverRuns) {
+  const Model model = MakeEveryOp(*table_);
+  const auto session = MakeSession(model);
+  const std::vector<float> first = RunOn(*session, 1);
+  for (int i = 0; i < 3; ++i) session->Run();
+  EXPECT_TRUE(SameBytes(AllOutputs(*session), first));
+}
+
+TEST(SessionsTest, NanInOneReachesNoOtherAndDoesNotStay) {
+  const Model model = MakeEveryOp(kernels::BestTable());
+  const auto sick = MakeSession(model), sound = MakeSession(model), solo = MakeSession(model);
+  for (std::uint32_t run = 0; run < 10; ++run) {
+    FillEveryOp(*sick, run);
+    sick->Input("x").f32[run * 7] = run % 2 == 0 ? std::numeric_limits<float>::quiet_NaN()
+                                                 : std::numeric_limits<float>::infinity();
+    sick->Run();
+    ASSERT_TRUE(SameBytes(RunOn(*sound, run), RunOn(*solo, run)));
+    // No state outlives a run: the next one on finite input is as of a fresh session.
+    ASSERT_TRUE(SameBytes(RunOn(*sick, run), RunOn(*solo, run)));
+  }
+}
+
+TEST(SessionsTest, ManyInParallelAgreeWithOneAlone) {
+  const Model model = MakeEveryOp(kernels::BestTable());
+  constexpr int kHosts = 6, kRuns = 30;
+  std::vector<std::vector<float>> want;
+  const auto solo = MakeSession(model);
+  for (std::uint32_t seed = 0; seed < kRuns; ++seed) want.push_back(RunOn(*solo, seed));
+  std::atomic<int> wrong{0};
+  std::vector<std::thread> hosts;
+  for (int h = 0; h < kHosts; ++h) {
+    hosts.emplace_back([&, h] {
+      for (std::uint32_t seed = 0; seed < kRuns; ++seed) {
+        // Some sessions are kept for long, some are made and destroyed while others run.
+        const auto session = MakeSession(model, {.threads = 1 + (h + static_cast<int>(seed)) % 3});
+        for (int i = 0; i < 2; ++i) {
+          if (!SameBytes(RunOn(*session, seed), want[seed])) ++wrong;
+        }
+      }
+    });
+  }
+  for (std::thread& host : hosts) host.join();
+  EXPECT_EQ(wrong.load(), 0);
+}
+
+TEST(SessionsTest, SharedPoolServesSeveralSessions) {
+  const Model model = MakeEveryOp(kernels::BestTable());
+  const auto pool = std::make_shared<ThreadPool>(3);
+  const auto a = MakeSession(model, {.threads = 3, .pool = pool});
+  const auto b = MakeSession(model, {.threads = 3, .pool = pool});
+  const auto solo = MakeSession(model);
+  for (std::uint32_t run = 0; run < 20; ++run) {
+    EXPECT_TRUE(SameBytes(RunOn(*a, run), RunOn(*solo, run)));
+    EXPECT_TRUE(SameBytes(RunOn(*b, run + 1), RunOn(*solo, run + 1)));
+  }
+}
+
+TEST(SessionsTest, OptionsOutOfRangeAreRefused) {
+  const Model model = MakeEveryOp(kernels::BestTable());
+  for (const int threads : {-1, 0, kMaxThreads + 1}) {
+    const auto session = Session::Create(model.plan, {.threads = threads});
+    ASSERT_FALSE(session.ok());
+    EXPECT_EQ(session.status().message(),
+              "threads: " + std::to_string(threads) + ", expected 1 to 64");
+  }
+  const auto small = std::make_shared<ThreadPool>(2);
+  EXPECT_FALSE(Session::Create(model.plan, {.threads = 3, .pool = small}).ok());
+}
+
+TEST(SessionsTest, UnknownNamesGiveNoData) {
+  const Model model = MakeEveryOp(kernels::BestTable());
+  const auto session = MakeSession(model);
+  EXPECT_EQ(session->Input("rows").f32, nullptr);
+  EXPECT_EQ(session->Output("x").f32, nullptr);
+  EXPECT_EQ(session->Output("").f32, nullptr);
+  EXPECT_NE(session->Output("rows").f32, nullptr);
+}
+
+TEST(SessionsTest, ProfileAddsUp) {
+  const Model model = MakeEveryOp(kernels::BestTable());
+  const auto session = MakeSession(model, {.threads = 2, .profile = true});
+  constexpr int kRuns = 5;
+  const auto begin = std::chrono::steady_clock::now();
+  for (std::uint32_t i = 0; i < kRuns; ++i) RunOn(*session, i);
+  const double wall =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  const std::vector<OpProfile> profile = session->Profile();
+  ASSERT_EQ(profile.size(), model.plan->steps().size());
+  double seconds = 0;
+  for (std::size_t i = 0; i < profile.size(); ++i) {
+    const Plan::Step& step = model.plan->steps()[i];
+    const std::uint64_t times = step.node.loop >= 0 ? 6 * kRuns : kRuns;
+    EXPECT_EQ(profile[i].runs, times) << profile[i].name;
+    EXPECT_DOUBLE_EQ(profile[i].flops, step.cost.flops * static_cast<double>(times));
+    EXPECT_EQ(profile[i].name, step.node.scope + " " + Name(step.node.op));
+    seconds += profile[i].seconds;
+  }
+  EXPECT_GT(seconds, 0);
+  EXPECT_LE(seconds, wall);
+  session->ResetProfile();
+  EXPECT_EQ(session->Profile()[0].runs, 0u);
+  const auto plain = MakeSession(model);
+  plain->ResetProfile();
+  EXPECT_TRUE(plain->Profile().empty());
+}
+
+#if defined(__SSE2__)
+constexpr unsigned kFlushBits = 0x8040;
+
+TEST(HostStateTest, TheFloatingPointModeIsRestored) {
+  const Model model = MakeEveryOp(kernels::BestTable());
+  const auto session = MakeSession(model, {.threads = 2});
+  const std::vector<float> want = RunOn(*session, 1);
+  const unsigned before = _mm_getcsr();
+  // Rounding upwards, or traps for every exception: the host's choice, and the results' no matter.
+  for (const unsigned mode : {before, (before & ~0x6000u) | 0x4000u, before & ~0x1f80u}) {
+    FillEveryOp(*session, 1);
+    _mm_setcsr(mode & ~0x3fu);
+    session->Run();
+    const unsigned after = _mm_getcsr();
+    _mm_setcsr(before);
+    EXPECT_EQ(after, mode & ~0x3fu);
+    EXPECT_TRUE(SameBytes(AllOutputs(*session), want));
+  }
+}
+
+TEST(HostStateTest, DenormalsAreFlushedInEveryThread) {
+  // A value that decays below the smallest normal number must become zero, whoever computes it.
+  Tensors tensors;
+  Graph g;
+  const Value x = g.Input("x", {64, 32});
+  g.Output("y", g.Affine(x, std::vector<float>(32, 1e-3f), std::vector<float>(32, 0.0f)));
+  WeightCache cache(kernels::BestTable(), nullptr);
+  auto plan = Plan::Make(std::move(g), cache);
+  ASSERT_TRUE(plan.ok());
+  for (const int threads : {1, 4}) {
+    auto session = Session::Create(*plan, {.threads = threads});
+    ASSERT_TRUE(session.ok());
+    const ValueView in = (*session)->Input("x"), out = (*session)->Output("y");
+    std::fill(in.f32, in.f32 + 64 * 32, 2e-38f);
+    std::fill(out.f32, out.f32 + 64 * 32, 1.0f);
+    (*session)->Run();
+    for (int i = 0; i < 64 * 32; ++i) ASSERT_EQ(out.f32[i], 0.0f) << "row " << i / 32;
+  }
+  EXPECT_EQ(_mm_getcsr() & kFlushBits, 0u);
+  const FlushDenormals flush;
+  EXPECT_EQ(_mm_getcsr() & kFlushBits, kFlushBits);
+}
+#endif
+
+TEST(HostStateTest, NoOpenMpIsLoaded) {
+  std::ifstream maps("/proc/self/maps");
+  for (std::string line; std::getline(maps, line);) {
+    EXPECT_EQ(line.find("libgomp"), std::string::npos) << line;
+    EXPECT_EQ(line.find("libomp"), std::string::npos) << line;
+  }
+}
+
+std::size_t Threads() {
+  std::size_t n = 0;
+  for ([[maybe_unused]] const auto& t : std::filesystem::directory_iterator("/proc/self/task")) ++n;
+  return n;
+}
+
+double ResidentMiB() {
+  std::ifstream statm("/proc/self/statm");
+  std::size_t size = 0, resident = 0;
+  statm >> size >> resident;
+  return static_cast<double>(resident) * static_cast<double>(sysconf(_SC_PAGESIZE)) / 1048576.0;
+}
+
+TEST(HostStateTest, AThousandSessionsLeaveNothingBehind) {
+  const Model model = MakeEveryOp(kernels::BestTable());
+  const auto cycle = [&](int i) {
+    const auto session = MakeSession(model, {.threads = 1 + i % 3});
+    session->Run();
+  };
+  for (int i = 0; i < 100; ++i) cycle(i);
+  const std::size_t threads = Threads();
+  const double resident = ResidentMiB();
+  for (int i = 0; i < 1000; ++i) cycle(i);
+  // A joined thread may take a moment to leave the list.
+  for (int i = 0; i < 200 && Threads() > threads; ++i) usleep(1000);
+  EXPECT_EQ(Threads(), threads);
+  // One arena is kept for a thousand to be found by: a leak of it would be hundreds of MiB.
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+  EXPECT_LE(ResidentMiB() - resident, 1.0);
+#else
+  (void)resident;
+#endif
+}
+
+TEST(HostStateTest, WorkersSleepBetweenRuns) {
+  const Model model = MakeEveryOp(kernels::BestTable());
+  const auto session = MakeSession(model, {.threads = 4});
+  RunOn(*session, 1);
+  usleep(20000);
+  const std::clock_t before = std::clock();  // processor time of all threads
+  usleep(200000);
+  const double used = static_cast<double>(std::clock() - before) / CLOCKS_PER_SEC;
+  EXPECT_LT(used, 0.02) << "seconds of processor time in 0.2 s of rest";
+}
+
+/// Runs `child` in a forked process and returns its exit status, or -1 when it takes 2 seconds.
+int ExitOfChild(const std::function<bool()>& child) {
+  const pid_t pid = fork();
+  if (pid == 0) _exit(child() ? 0 : 1);
+  for (int i = 0; i < 2000; ++i) {
+    int status = 0;
+    if (waitpid(pid, &status, WNOHANG) == pid)
+      return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    usleep(1000);
+  }
+  kill(pid, SIGKILL);
+  waitpid(pid, nullptr, 0);
+  return -1;
+}
+
+TEST(ForkTest, AChildRunsAndGivesTheSameBytes) {
+  if (kThreadSanitizer) GTEST_SKIP() << "the thread sanitizer forbids threads after fork";
+  const Model model = MakeEveryOp(kernels::BestTable());
+  const auto session = MakeSession(model, {.threads = 3});
+  const std::vector<float> want = RunOn(*session, 1);
+  for (int i = 0; i < 20; ++i) {
+    ASSERT_EQ(ExitOfChild([&] { return bool{SameBytes(RunOn(*session, 1), want)}; }), 0);
+    ASSERT_TRUE(SameBytes(RunOn(*session, 1), want)) << "in the parent, after fork " << i;
+  }
+}
+
+TEST(ForkTest, AChildMayMakeAndDestroySessions) {
+  if (kThreadSanitizer) GTEST_SKIP() << "the thread sanitizer forbids threads after fork";
+  const Model model = MakeEveryOp(kernels::BestTable());
+  auto inherited = MakeSession(model, {.threads = 8});
+  const std::vector<float> want = RunOn(*inherited, 1);
+  EXPECT_EQ(ExitOfChild([&] {
+              // The new threads may get the handles that the old ones had.
+              auto own = MakeSession(model, {.threads = 8});
+              bool good{SameBytes(RunOn(*own, 1), want)};
+              inherited.reset();
+              good = good && SameBytes(RunOn(*own, 1), want);
+              own.reset();
+              return good;
+            }),
+            0);
+  EXPECT_TRUE(SameBytes(RunOn(*inherited, 1), want));
+}
+
+TEST(WorkerTest, PartsCoverEverythingOnce) {
+  for (const std::size_t n : {0u, 1u, 7u, 64u, 1000u}) {
+    for (const std::size_t grain : {1u, 8u, 48u}) {
+      for (int count = 1; count <= 9; ++count) {
+        std::size_t at = 0;
+        for (int i = 0; i < count; ++i) {
+          const Worker::Range part = Worker{i, count, nullptr, 0}.Part(n, grain);
+          ASSERT_EQ(part.begin, at);
+          ASSERT_TRUE(part.begin % grain == 0 || part.empty());
+          ASSERT_GE(part.end, part.begin);
+          at = part.end;
+        }
+        ASSERT_EQ(at, n);
+      }
+    }
+  }
+}
+
+TEST(ThreadPoolTest, EveryWorkerRunsOnceInEachOfManyRuns) {
+  ThreadPool pool(4);
+  ASSERT_TRUE(pool.complete());
+  struct Tally {
+    std::atomic<int> calls[4] = {};
+    std::atomic<int> met{0};
+  } tally;
+  for (int run = 1; run <= 500; ++run) {
+    pool.Run(
+        [](void* context, Worker worker) {
+          auto& t = *static_cast<Tally*>(context);
+          ++t.calls[worker.index];
+          ++t.met;
+          worker.Meet();
+          // Nobody leaves before all have come.
+          if (t.met.load() % 4 != 0) t.calls[worker.index] += 1000000;
+          worker.Meet();
+        },
+        &tally);
+    for (const auto& calls : tally.calls) ASSERT_EQ(calls.load(), run);
+  }
+}
+
+}  // namespace
+}  // namespace gestus::test
