@@ -14,7 +14,7 @@ namespace gestus::bench {
 /// one core.  The best of several short runs, measured anew by each call (a few milliseconds).
 double PeakGflops(kernels::Isa isa);
 
-/// The same on all cores at once.
+/// The same on all cores at once, the best of all calls so far.
 double PeakGflopsAllCores(kernels::Isa isa);
 
 /// GB/s of reading `bytes` again and again on one core; more than the L3 cache for that of DRAM.

@@ -66,8 +66,8 @@ def read_checkpoint(path):
     """The tensors of the state_dict in `path`; refuses what is damaged, unusual or hostile."""
     with open(path, "rb") as file:
         if file.read(len(LEGACY_MAGIC)) == LEGACY_MAGIC:
-            raise ConvertError(f"{path}: written by torch.save before PyTorch 1.6, expected its zip "
-                               "format; load and save it again with a newer PyTorch")
+            raise ConvertError(f"{path}: written by torch.save before PyTorch 1.6, expected its "
+                               "zip format; load and save it again with a newer PyTorch")
         try:
             with zipfile.ZipFile(file) as archive:
                 return _read_archive(path, archive)
@@ -87,7 +87,7 @@ def _read_archive(path, archive):
 
 
 def _members(path, archive):
-    """Members by name and the folder that all of them are in; every size is proven by the file's."""
+    """Members by name and the folder of data.pkl; every size is proven by the file's."""
     members, total = {}, 0
     if any(name.split("/")[-1] == "constants.pkl" for name in archive.namelist()):
         raise ConvertError(f"{path}: a TorchScript archive, expected a checkpoint with the "

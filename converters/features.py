@@ -63,7 +63,7 @@ def _mel_to_hz(mel):
 
 
 def to_frames(rows, rate, frames=None):
-    """Every k-th of `rows`, k = round(rate / 15), as PATS' loader thins features out to 15 a second.
+    """Every k-th of `rows`, k = round(rate / 15), as PATS' loader thins features to 15 a second.
 
     `rate` is what the loader takes for the rows of a second, PATS_MEL_RATE for log_mel_512 of 44.1
     or 48 kHz; other recordings have their sample rate / 512.  `frames` cuts the result, or fills it

@@ -1,7 +1,7 @@
 """Fits published vision and audio checkpoints to AST's patch grid (Gong et al. 2021, section 2.2).
 
-Recognised by the shapes: DeiT-384's 24 x 24 position embeddings, the AudioSet checkpoint's 12 x 101,
-and DeiT's patch convolution over three colours.
+Recognised by the shapes: DeiT-384's 24 x 24 position embeddings, the AudioSet checkpoint's
+12 x 101, and DeiT's patch convolution over three colours.
 """
 
 import numpy as np

@@ -176,7 +176,8 @@ def _tensor(path, record, region, position, known):
     for dim in shape:
         size *= dim
     begin, end = record["offset"], record["offset"] + size
-    if len(shape) > MAX_RANK or not all(1 <= n <= MAX_DIM for n in shape) or size != record["bytes"]:
+    fits = len(shape) <= MAX_RANK and all(1 <= n <= MAX_DIM for n in shape)
+    if not fits or size != record["bytes"]:
         raise ConvertError(where + f"{record['bytes']} bytes do not fit shape {shape}")
     if begin % ALIGN or begin < position or align(end) + ALIGN > region.size:
         raise ConvertError(where + f"payload at {begin} overlaps another or ends outside the file")

@@ -7,7 +7,6 @@
 #include "kernels/elementwise.inl.h"
 #include "kernels/gemm.inl.h"
 #include "kernels/gemv.inl.h"
-#include "kernels/gemv.inl.h"
 #include "kernels/kernels.h"
 #include "kernels/layer_norm.inl.h"
 #include "kernels/lstm.inl.h"

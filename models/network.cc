@@ -46,7 +46,15 @@ Status CheckArray(const ArraySpec& spec, const Array& array) {
   bool fits = array.dtype == spec.dtype && array.shape.size() == spec.shape.size();
   for (std::size_t i = 0; fits && i < spec.shape.size(); ++i)
     fits = spec.shape[i] == ArraySpec::kAny ? array.shape[i] > 0 : array.shape[i] == spec.shape[i];
-  if (fits) return {};
+  if (fits) {
+    std::size_t elements = 1;
+    for (std::int64_t d : array.shape) elements *= static_cast<std::size_t>(d);
+    const std::size_t held = array.dtype == DType::kI32 ? array.i32.size() : array.f32.size();
+    if (held == elements) return {};
+    return Status(Code::kBadInput, spec.name + ": " + std::to_string(held) +
+                                       " elements, expected those of " +
+                                       Describe(array.shape, nullptr));
+  }
   return Status(Code::kBadInput, spec.name + ": " + Describe(array.shape, nullptr) + " " +
                                      Name(array.dtype) + ", expected " +
                                      Describe(spec.shape, &spec.axes) + " " + Name(spec.dtype));

@@ -46,8 +46,8 @@ Result<Normalisation> ReadNormalisation(const fb::Network& network, const std::s
       result.mean.push_back(n->mean()->Get(at));
       result.deviation.push_back(n->deviation()->Get(at));
       const float scale = 1.0f / (result.divisor * result.deviation.back());
-      if (!(result.deviation.back() > 0) || !std::isfinite(result.mean.back()) ||
-          !std::isfinite(scale))
+      if (!(result.deviation.back() > 0) || !std::isfinite(result.deviation.back()) ||
+          !std::isfinite(result.mean.back()) || !std::isfinite(scale))
         return error("deviations must be positive and all values finite");
     }
     return result;

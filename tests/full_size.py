@@ -13,7 +13,7 @@ import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-MODES = ("autoregressive", "shifted_parallel", "parallel")
+MODES = ("Autoregressive", "ShiftedParallel", "Parallel")  # as the schema names them
 
 
 def run(*command, **environment):
@@ -24,7 +24,7 @@ def run(*command, **environment):
 def isas(infer_cli):
     text = subprocess.run([infer_cli, "--version", "--json"], check=True, capture_output=True,
                           text=True).stdout
-    return json.loads(text)["isas"]
+    return json.loads(text)["available_isas"]
 
 
 def check(infer_cli, work, name, kind, config, available):

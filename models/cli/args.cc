@@ -1,3 +1,4 @@
+// Declares the command line to CLI11, which also writes the help from these declarations.
 #include "models/cli/args.h"
 
 #include <CLI/CLI.hpp>

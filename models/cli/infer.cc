@@ -1,3 +1,4 @@
+// The run itself: open, read, run, write, report; each step can end it with one sentence.
 #include "models/cli/infer.h"
 
 #include "models/cli/machine.h"

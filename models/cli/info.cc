@@ -1,3 +1,4 @@
+// Builds the text and the JSON of `infer-cli info` from the checked file, never from raw bytes.
 #include "models/cli/info.h"
 
 #include "models/cli/json.h"

@@ -1,3 +1,4 @@
+// Commas, indentation and escapes of JSON; numbers go through std::to_chars, which knows no locale.
 #include "models/cli/json.h"
 
 #include <array>

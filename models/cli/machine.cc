@@ -1,3 +1,4 @@
+// Asks the kernels' dispatch what runs here, and puts refusals into words.
 #include "models/cli/machine.h"
 
 #include <cstdlib>

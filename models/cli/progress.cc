@@ -1,3 +1,4 @@
+// The bar redraws itself ten times a second at most, so that it costs nothing beside a segment.
 #include "models/cli/progress.h"
 
 #include <unistd.h>

@@ -1,3 +1,4 @@
+// Timing statistics and the two forms of the report.
 #include "models/cli/report.h"
 
 #include <algorithm>
@@ -37,6 +38,20 @@ void ArraysJson(JsonWriter* json, const char* key, const models::Arrays& arrays)
   for (const auto& [name, array] : arrays) {
     json->BeginObject().Member("name", name).Member("dtype", NumpyName(array.dtype));
     json->Member("shape", array.shape).EndObject();
+  }
+  json->EndArray();
+}
+
+void ProfileJson(JsonWriter* json, const std::vector<OpProfile>& ops) {
+  json->Key("profile").BeginArray();
+  for (const OpProfile& op : ops) {
+    json->BeginObject()
+        .Member("name", op.name)
+        .Member("runs", op.runs)
+        .Member("seconds", op.seconds)
+        .Member("flops", op.flops)
+        .Member("bytes", op.bytes)
+        .EndObject();
   }
   json->EndArray();
 }
@@ -144,19 +159,7 @@ std::string InferReport::Json() const {
       .Member("isa", setup.kernels->name)
       .Member("notes", run.notes);
   if (arguments.plan) json.Member("plan", setup.network->PlanText());
-  if (arguments.profile) {
-    json.Key("profile").BeginArray();
-    for (const OpProfile& op : run.ops) {
-      json.BeginObject()
-          .Member("name", op.name)
-          .Member("runs", op.runs)
-          .Member("seconds", op.seconds)
-          .Member("flops", op.flops)
-          .Member("bytes", op.bytes)
-          .EndObject();
-    }
-    json.EndArray();
-  }
+  if (arguments.profile) ProfileJson(&json, run.ops);
   json.EndObject();
   return json.text();
 }

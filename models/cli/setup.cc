@@ -1,3 +1,4 @@
+// Opening weights and making networks, in the order in which errors are most useful.
 #include "models/cli/setup.h"
 
 #include <cerrno>

@@ -1,3 +1,4 @@
+// Reading and writing .style files, and taking styles from clips.
 #include "models/cli/style.h"
 
 #include <algorithm>

@@ -63,7 +63,8 @@ def changed(checkpoint, change):
     (lambda s: s.update({"extra.bias": torch.zeros(17)}), "extra.bias: (17,), not part"),
     (lambda s: s.update({"dense.bias": torch.zeros(16).long()}), "dense.bias: int64, expected"),
     (lambda s: s.update({"dense.bias": torch.full((16,), np.nan)}), "not finite"),
-    (lambda s: s.update({"dense.bias": torch.full((16,), 1e300, dtype=torch.float64)}), "not finite"),
+    (lambda s: s.update({"dense.bias": torch.full((16,), 1e300, dtype=torch.float64)}),
+     "not finite"),
     (lambda s: [s.pop(k) for k in list(s) if k.startswith("ast_style.")], "and 23 more"),
 ])
 def test_export_refuses(checkpoint, tiny_config, capfd, change, message):

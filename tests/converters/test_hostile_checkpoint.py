@@ -206,8 +206,8 @@ def test_flipped_bytes_with_a_right_checksum(tmp_path):
 
 
 def test_the_command_line_says_it_in_one_line(tmp_path, capfd):
-    path = archive(tmp_path / "x.pt", b"\x80\x04" + text("evil\x1b[31m\nline") + text("f") + b"\x93.",
-                   FOUR)
+    program = b"\x80\x04" + text("evil\x1b[31m\nline") + text("f") + b"\x93."
+    path = archive(tmp_path / "x.pt", program, FOUR)
     assert main(["export", path, "-o", str(tmp_path / "x.fb")]) == 2
     error = capfd.readouterr().err
     assert error.count("\n") == 1 and "\x1b" not in error

@@ -251,7 +251,7 @@ TEST(HostStateTest, AThousandSessionsLeaveNothingBehind) {
   const Model model = MakeEveryOp(kernels::BestTable());
   const auto cycle = [&](int i) {
     const auto session = MakeSession(model, {.threads = 1 + i % 3});
-    session->Run();
+    if (i % 10 < 3) session->Run();
   };
   for (int i = 0; i < 100; ++i) cycle(i);
   const std::size_t threads = Threads();

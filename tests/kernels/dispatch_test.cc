@@ -49,8 +49,8 @@ TEST(DispatchTest, AllThreadsGetTheSameTable) {
   for (const KernelTable* table : seen) EXPECT_EQ(table, &kernels::BestTable());
 }
 
-// The choice is made once per process, so each value is tried in a child of its own.  GoogleTest runs
-// suites named DeathTest first, when this process has not chosen yet.
+// The choice is made once per process, so each value is tried in a child of its own.  GoogleTest
+// runs suites named DeathTest first, when this process has not chosen yet.
 TEST(DispatchDeathTest, EnvironmentLowersTheChoice) {
   const auto exit_if = [](const char* value, Isa want) {
     setenv("GESTUS_ISA", value, 1);
