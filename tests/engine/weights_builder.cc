@@ -101,8 +101,9 @@ Bytes FileSpec::Build() const {
     records.push_back(AddTensor(b, t, data.size()));
     const std::size_t at = data.size();
     data.resize(at + AlignUp(PayloadBytes(t)));
-    std::memcpy(data.data() + at, t.values.data(),
-                std::min<std::size_t>(t.values.size() * sizeof(float), data.size() - at));
+    if (!t.values.empty())
+      std::memcpy(data.data() + at, t.values.data(),
+                  std::min<std::size_t>(t.values.size() * sizeof(float), data.size() - at));
   }
   data.resize(data.size() + 64);
   const auto tensor_list = b.CreateVector(records);
