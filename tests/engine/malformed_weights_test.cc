@@ -122,7 +122,7 @@ void AddHeaderCases(Cases* cases) {
              Put<std::uint64_t>(b, kDataSizeAt, Get<std::uint64_t>(*b, kDataSizeAt) + 1000);
            })},
           {"PaddingCutOff", "outside the data region", Patched([](Bytes* b) {
-             b->resize(b->size() - 64);
+             b->erase(b->end() - 64, b->end());
              Put<std::uint64_t>(b, kFileSizeAt, b->size());
              Put<std::uint64_t>(b, kDataSizeAt, Get<std::uint64_t>(*b, kDataSizeAt) - 64);
            })},
