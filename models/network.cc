@@ -36,7 +36,7 @@ Result<std::unique_ptr<Network>> MakeNetwork(std::shared_ptr<const WeightsFile> 
       return MakeZsMstm1Network(std::move(file), name, options);
     case fb::Config::AstConfig:
       return MakeAstNetwork(std::move(file), name, options);
-    case fb::Config::NONE:
+    default:
       break;
   }
   return Status(Code::kBadWeights, file->path() + ": network of a kind this version does not know");
