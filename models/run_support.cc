@@ -22,6 +22,16 @@ Status CheckInputs(const Signature& signature, const Arrays& inputs) {
   return {};
 }
 
+Status CheckOptions(const RunOptions& options) {
+  if (options.repeat < 1)
+    return Status(Code::kInvalidArgument,
+                  "repeat: " + std::to_string(options.repeat) + ", expected 1 or more");
+  if (options.threads < 1 || options.threads > kMaxThreads)
+    return Status(Code::kInvalidArgument, "threads: " + std::to_string(options.threads) +
+                                              ", expected 1 to " + std::to_string(kMaxThreads));
+  return {};
+}
+
 Status CheckFinite(const std::string& name, const Array& array, Code code) {
   const std::int64_t cols = array.shape.empty() ? 1 : array.shape.back();
   for (std::size_t i = 0; i < array.f32.size(); ++i) {

@@ -15,6 +15,9 @@ namespace gestus::models {
 /// required one is missing.
 Status CheckInputs(const Signature& signature, const Arrays& inputs);
 
+/// Repeats and threads in range.
+Status CheckOptions(const RunOptions& options);
+
 /// All values finite, or an error that names the array and the first place that is not.
 Status CheckFinite(const std::string& name, const Array& array, Code code);
 

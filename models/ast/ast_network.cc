@@ -65,6 +65,7 @@ class AstNetwork final : public Network {
   std::string PlanText() const override { return plan_->ToString(); }
 
   Result<Arrays> Run(const Arrays& inputs, const RunOptions& options, RunReport* report) override {
+    GESTUS_RETURN_IF_ERROR(CheckOptions(options));
     GESTUS_RETURN_IF_ERROR(CheckInputs(signature_, inputs));
     std::shared_ptr<const Plan> plan = plan_;
     if (options.taps) GESTUS_RETURN_IF_ERROR(MakePlan(true, &plan));

@@ -21,9 +21,9 @@ Value Autoregressive(Graph& g, const ZsMstm1Config& c, const ZsMstm1Weights& w, 
   if (positions) x = g.Add(x, g.StepRow(pe));
   for (std::size_t i = 0; i < w.decoder.size(); ++i) {
     x = DecoderLayerStep(g, w.decoder[i], c.decoder_heads, x, memory[i], cache[i]);
-    g.StoreRow(trace[i], x);
+    g.StoreRows(trace[i], x);
   }
-  g.StoreRow(poses, g.Linear(x, w.head));
+  g.StoreRows(poses, g.Linear(x, w.head));
   g.EndLoop();
   for (std::size_t i = 0; i < trace.size(); ++i) g.Tap("decoder." + std::to_string(i), trace[i]);
   return poses;  // (rows, pose row)

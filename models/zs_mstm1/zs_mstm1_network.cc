@@ -167,6 +167,7 @@ Status ZsMstm1Network::RunGenerator(const Arrays& inputs, const RunOptions& opti
 
 Result<Arrays> ZsMstm1Network::Run(const Arrays& inputs, const RunOptions& options,
                                    RunReport* report) {
+  GESTUS_RETURN_IF_ERROR(CheckOptions(options));
   GESTUS_RETURN_IF_ERROR(CheckInputs(signature_, inputs));
   const Result<bool> speaks = Together(inputs, {"speech", "text"});
   if (!speaks.ok()) return speaks.status();

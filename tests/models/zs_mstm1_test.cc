@@ -341,6 +341,21 @@ TEST(ZsMstm1InputsTest, ResultsThatOverflowAreAnErrorNotNan) {
   }
 }
 
+TEST(ZsMstm1OptionsTest, OutOfRangeIsAnError) {
+  const Bytes bytes = TinyZsMstm1().File().Build();
+  const auto file = WeightsFile::FromMemory(bytes.data(), bytes.size(), "tiny");
+  ASSERT_TRUE(file.ok());
+  const auto network = models::MakeNetwork(*file, "");
+  ASSERT_TRUE(network.ok());
+  const Arrays inputs = TinyInputs(kFrames, kFrames, 4);
+  for (const models::RunOptions& options :
+       {models::RunOptions{.repeat = 0}, {.repeat = -1}, {.threads = 0}, {.threads = 65}}) {
+    const auto outputs = (*network)->Run(inputs, options, nullptr);
+    ASSERT_FALSE(outputs.ok());
+    EXPECT_NE(outputs.status().message().find("expected 1"), std::string::npos);
+  }
+}
+
 // Damage whose checksum fits: refused, or a network whose results are finite or an error.
 TEST(ZsMstm1DamageTest, AnyBitOfTheMetadataMayFlip) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
