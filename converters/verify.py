@@ -23,8 +23,7 @@ def verify(options):
         tensors = checkpoint_tensors(read_checkpoint(options.checkpoint), network,
                                      options.ast and read_checkpoint(options.ast))
     else:
-        wanted = shapes.network_shapes(network)
-        tensors = {key: x for key, x in file.network_tensors(network).items() if key in wanted}
+        tensors = shapes.network_tensors(network, file.network_tensors(network))
     inputs = networks.random_inputs(network, options.seed)
     got = run_engine(options.infer_cli, options.weights, inputs)
     want = run(build(network, tensors), inputs, taps=True)
