@@ -24,20 +24,19 @@ def make(changes, normalisations=(goldens.SPEECH, goldens.POSE)):
     return network, build(network, random_weights(network, 1)), networks.random_inputs(network, 2)
 
 
-@pytest.mark.parametrize("case", list(goldens.cases()), ids=lambda case: case[0])
+@pytest.mark.parametrize("case", list(goldens.cases()), ids=lambda case: case.name)
 def test_shapes_are_the_keys_of_the_module(case):
-    network = case[2]
+    network = case.network()
     module = build(network, random_weights(network, 1)).weights()
     found = {key: tuple(x.shape) for key, x in module.state_dict().items()}
     assert found == shapes.network_shapes(network)
 
 
-@pytest.mark.parametrize("case", list(goldens.cases()), ids=lambda case: case[0])
+@pytest.mark.parametrize("case", list(goldens.cases()), ids=lambda case: case.name)
 def test_goldens_are_up_to_date(case, tmp_path):
-    name = case[0]
-    goldens.make_case(str(tmp_path), *case)
-    with np.load(tmp_path / f"{name}.npz") as fresh, \
-            np.load(os.path.join(GOLDENS, f"{name}.npz")) as kept:
+    goldens.make_case(str(tmp_path), case)
+    with np.load(tmp_path / f"{case.name}.npz") as fresh, \
+            np.load(os.path.join(GOLDENS, f"{case.name}.npz")) as kept:
         assert fresh.files == kept.files
         for key in fresh.files:
             assert verify.relative_error(fresh[key], kept[key]) <= ROUNDING, key
@@ -47,9 +46,9 @@ def test_goldens_are_deterministic(tmp_path):
     case = next(goldens.cases())
     for folder in ("a", "b"):
         os.mkdir(tmp_path / folder)
-        goldens.make_case(str(tmp_path / folder), *next(goldens.cases()))
+        goldens.make_case(str(tmp_path / folder), next(goldens.cases()))
     for suffix in (".fb", ".npz"):
-        name = case[0] + suffix
+        name = case.name + suffix
         assert (tmp_path / "a" / name).read_bytes() == (tmp_path / "b" / name).read_bytes()
 
 
@@ -107,10 +106,11 @@ def test_autoregressive_rows_depend_on_the_rows_before():
     taps = run(module, inputs, taps=True)
     z = torch.from_numpy(taps["tap/generator/z"]).double()
     poses = torch.from_numpy(taps["tap/generator/head"]).double()
+    g = module.generator
     for j in (0, 1, 5):
         before = torch.cat([torch.zeros(1, 6, dtype=torch.float64), poses[:j]])
         with torch.no_grad():
-            row = module.head(module.decode(module.pose_embedding(before), z, blocks.no_tap))[-1]
+            row = g.head(g.decode(g.embedding(before), z, blocks.no_tap))[-1]
         assert verify.relative_error(row.numpy(), poses[j].numpy()) < 1e-5
 
 
@@ -123,7 +123,7 @@ def test_targets_are_causal(mode, sees):
         target = torch.cat([torch.zeros_like(z[:1]), z[:-1]]) if mode != "Parallel" else z
         changed = target.clone()
         changed[sees:] += 1
-        a, b = (module.decode(x, z, blocks.no_tap) for x in (target, changed))
+        a, b = (module.generator.decode(x, z, blocks.no_tap) for x in (target, changed))
     assert torch.equal(a[:sees], b[:sees]) and not torch.allclose(a[sees:], b[sees:])
 
 
