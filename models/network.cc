@@ -2,6 +2,10 @@
 #include "models/network.h"
 
 #include "models/ast/ast_network.h"
+#include "models/autoencoder/autoencoder.h"
+#include "models/bert/bert.h"
+#include "models/classifier/classifier.h"
+#include "models/discriminator/discriminator.h"
 #include "models/zs_mstm1/zs_mstm1_network.h"
 #include "weights_generated.h"
 
@@ -36,6 +40,14 @@ Result<std::unique_ptr<Network>> MakeNetwork(std::shared_ptr<const WeightsFile> 
       return MakeZsMstm1Network(std::move(file), name, options);
     case fb::Config::AstConfig:
       return MakeAstNetwork(std::move(file), name, options);
+    case fb::Config::AutoencoderConfig:
+      return MakeAutoencoderNetwork(std::move(file), name, options);
+    case fb::Config::BertConfig:
+      return MakeBertNetwork(std::move(file), name, options);
+    case fb::Config::ClassifierConfig:
+      return MakeClassifierNetwork(std::move(file), name, options);
+    case fb::Config::DiscriminatorConfig:
+      return MakeDiscriminatorNetwork(std::move(file), name, options);
     default:
       break;
   }

@@ -9,6 +9,7 @@
 #include "engine/binder.h"
 #include "engine/graph.h"
 #include "models/ast/ast.h"
+#include "models/blocks/pool.h"
 #include "models/blocks/transformer.h"
 #include "models/normalisation.h"
 
@@ -19,7 +20,6 @@ struct Network;
 namespace gestus::models {
 
 enum class Granularity { kFrame, kSegment };
-enum class StylePool { kMean, kFirst, kLast };
 enum class DecoderMode { kAutoregressive, kShiftedParallel, kParallel };
 enum class PositionalEncoding { kNone, kSinusoidal };
 

@@ -21,11 +21,7 @@ Value StyleEncoder(Graph& g, const ZsMstm1Config& c, const ZsMstm1Weights& w, Va
   const Value e_pose = g.Rows(h, c.frames - 1, 1);  // last hidden
 
   // eq. 6.2: h_style = [sa([X_text, E_speech]), E_pose]
-  const std::int64_t last = g.shape(sa).Rows() - 1;
-  const Value pooled = c.style_pool == StylePool::kMean    ? g.MeanRows(sa)
-                       : c.style_pool == StylePool::kFirst ? g.Rows(sa, 0, 1)
-                                                           : g.Rows(sa, last, 1);
-  const Value h_style = g.Concat({pooled, e_pose});
+  const Value h_style = g.Concat({Pool(g, c.style_pool, sa), e_pose});
   g.Tap("h_style", h_style);
   return h_style;
 }
