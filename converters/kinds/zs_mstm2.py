@@ -15,7 +15,7 @@ FACE_POINTS = (
     (37, (-30, -170)), (41, (-30, -161)), (44, (30, -170)), (46, (30, -161)),
 )
 FACE = {"stream": "face", "mean": np.array([at for _, at in FACE_POINTS], float).T.ravel().tolist(),
-        "deviation": [4.0]}
+        "deviation": [4.0] * 2 * len(FACE_POINTS)}
 
 
 def d_style(c):

@@ -34,7 +34,7 @@ def test_the_body_is_that_of_version_1():
     weights = random_weights(network, 1)
     dense = weights["pose_generator.dense.weight"]
     dense[:, 12 + 12 + 5:] = 0  # behind h_content, self-attention and E_pose
-    first = networks.complete("zs_mstm1", {"config": tiny.CORE, "normalisations": [
+    first = networks.complete("zs_mstm1", {"config": network["config"]["core"], "normalisations": [
         n for n in network["normalisations"] if n["stream"] != "face"]})
     renamed = {key.replace("pose_generator.", "").replace("embedding", "pose_embedding")
                if key.startswith("pose_generator") else key: x for key, x in weights.items()}
