@@ -6,7 +6,7 @@
 #include "models/bert/bert.h"
 #include "models/classifier/classifier.h"
 #include "models/discriminator/discriminator.h"
-#include "models/zs_mstm1/zs_mstm1_network.h"
+#include "models/zs_mstm/zs_mstm_network.h"
 #include "weights_generated.h"
 
 namespace gestus::models {
@@ -37,7 +37,8 @@ Result<std::unique_ptr<Network>> MakeNetwork(std::shared_ptr<const WeightsFile> 
   }
   switch (network->config_type()) {
     case fb::Config::ZsMstm1Config:
-      return MakeZsMstm1Network(std::move(file), name, options);
+    case fb::Config::ZsMstm2Config:
+      return MakeZsMstmNetwork(std::move(file), name, options);
     case fb::Config::AstConfig:
       return MakeAstNetwork(std::move(file), name, options);
     case fb::Config::AutoencoderConfig:

@@ -19,7 +19,7 @@
 #include <new>
 #include <vector>
 
-#include "models/zs_mstm1/zs_mstm1.h"
+#include "models/zs_mstm/zs_mstm.h"
 #include "tests/engine/every_op.h"
 
 namespace {
@@ -114,7 +114,7 @@ ssize_t write(int fd, const void* data, std::size_t n) {
 namespace {
 
 using namespace gestus;  // NOLINT: this is a test of that library
-using models::ZsMstm1;
+using models::ZsMstm;
 
 /// What is run again and again; empty after an error has been told.
 using Subject = std::function<void()>;
@@ -124,21 +124,21 @@ Subject Fail(const Status& status) {
   return {};
 }
 
-Subject ZsMstm1Of(const char* path, int threads) {
+Subject ZsMstmOf(const char* path, int threads) {
   const auto file = WeightsFile::Open(path);
   if (!file.ok()) return Fail(file.status());
-  const auto model = ZsMstm1::Make(*file, "");
+  const auto model = ZsMstm::Make(*file, "");
   if (!model.ok()) return Fail(model.status());
-  auto made = ZsMstm1::NewAgent(*model, {.threads = threads});
+  auto made = ZsMstm::NewAgent(*model, {.threads = threads});
   if (!made.ok()) return Fail(made.status());
-  const models::ZsMstm1Config& c = (*model)->config();
+  const models::ZsMstmConfig& c = (*model)->config();
   const auto values = [&](std::int64_t cols) {
     return std::vector<float>(static_cast<std::size_t>(c.WindowFrames() * cols), 0.5f);
   };
-  const std::shared_ptr<models::ZsMstm1Agent> agent(std::move(*made));
+  const std::shared_ptr<models::ZsMstmAgent> agent(std::move(*made));
   return [agent, speech = values(c.ast_content.mel_bins), text = values(c.d_text),
           pose = values(c.d_pose)]() mutable {
-    agent->AddStyleSegment(speech.data(), text.data(), pose.data());
+    agent->AddStyleSegment({speech.data(), text.data(), pose.data()});
     agent->Generate(speech.data(), text.data(), pose.data());
   };
 }
@@ -160,7 +160,7 @@ int main(int argc, char** argv) {
   const int threads = std::atoi(argv[2]), repeats = std::atoi(argv[3]);
   const bool plant = argc > 4 && std::strcmp(argv[4], "--plant") == 0;
   const Subject run =
-      std::strcmp(argv[1], "every-op") == 0 ? EveryOpOf(threads) : ZsMstm1Of(argv[1], threads);
+      std::strcmp(argv[1], "every-op") == 0 ? EveryOpOf(threads) : ZsMstmOf(argv[1], threads);
   if (!run) return 2;
 
   for (int i = 0; i < 10; ++i) run();

@@ -74,6 +74,11 @@ void ExpectClose(const std::string& name, const Array& got, const Array& want) {
   EXPECT_GT(largest, 0) << name << ": expected values are all zero and prove nothing";
 }
 
+std::size_t Taps(const Arrays& arrays) {
+  return static_cast<std::size_t>(std::count_if(
+      arrays.begin(), arrays.end(), [](const auto& a) { return a.first.rfind("tap/", 0) == 0; }));
+}
+
 class GoldenTest : public testing::TestWithParam<std::tuple<std::string, kernels::Isa>> {};
 
 TEST_P(GoldenTest, AgreesWithPyTorch) {
@@ -108,7 +113,8 @@ TEST_P(GoldenTest, AgreesWithPyTorch) {
       tapped += output.rfind("tap/", 0) == 0;
     }
     EXPECT_EQ(compared - tapped, (*network)->signature().outputs.size());
-    EXPECT_EQ(tapped > 0, taps);
+    // What the reference taps and the engine does not would be compared by nobody.
+    EXPECT_EQ(tapped, taps ? Taps(golden) : 0);
   }
 
   const auto self_test = RunSelfTest(**file, "", **network);

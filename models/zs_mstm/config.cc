@@ -1,5 +1,7 @@
-// Reads and checks ZS-MSTM 1.0's configuration, and binds its tensors.
-#include "models/zs_mstm1/config.h"
+// Reads and checks ZS-MSTM's configuration, and binds its tensors.
+#include "models/zs_mstm/config.h"
+
+#include <tuple>
 
 #include "models/blocks/weights.h"
 #include "models/config.h"
@@ -7,11 +9,18 @@
 
 namespace gestus::models {
 
-Result<ZsMstm1Config> ReadZsMstm1Config(const fb::Network& network) {
+Result<ZsMstmConfig> ReadZsMstmConfig(const fb::Network& network) {
   const std::string where = "network " + network.name()->str();
-  const fb::ZsMstm1Config& f = *network.config_as_ZsMstm1Config();
+  const fb::ZsMstm2Config* second = network.config_as_ZsMstm2Config();
+  const fb::ZsMstm1Config& f =
+      second != nullptr ? *second->core() : *network.config_as_ZsMstm1Config();
   ConfigReader read(where);
-  ZsMstm1Config c;
+  ZsMstmConfig c;
+  if (second != nullptr) {
+    c.d_face = read.Size("d_face", second->d_face(), 1, 1 << 10);
+    c.d_tags = read.Size("d_tags", second->d_tags(), 1, 1 << 10);
+    c.dense_shared = second->dense_shared();
+  }
   c.frames = read.Size("frames", f.frames(), 1, 1 << 12);
   c.d_text = read.Size("d_text", f.d_text(), 1, 1 << 14);
   c.d_pose = read.Size("d_pose", f.d_pose(), 1, 1 << 10);
@@ -32,9 +41,7 @@ Result<ZsMstm1Config> ReadZsMstm1Config(const fb::Network& network) {
   c.positions =
       read.Enum<PositionalEncoding>("positions", f.positions(), fb::PositionalEncoding::MAX);
   read.Enum<int>("pose_source", f.pose_source(), fb::PoseSource::MAX);
-  c.frame_rate = f.frame_rate();
-  if (!(c.frame_rate >= 1 && c.frame_rate <= 1000))
-    read.Fail("frame_rate", std::to_string(c.frame_rate), "1 to 1000 frames a second");
+  c.frame_rate = read.Rate("frame_rate", f.frame_rate());
   if (!c.ast_shared && f.ast_style() == nullptr)
     read.Fail("ast_style", "absent", "a configuration unless ast_shared");
   GESTUS_RETURN_IF_ERROR(read.status());
@@ -63,8 +70,9 @@ Result<ZsMstm1Config> ReadZsMstm1Config(const fb::Network& network) {
     Normalisation* to;
     std::int64_t columns;
   };
-  for (const Stream& s : {Stream{"speech", &c.speech, c.ast_content.mel_bins},
-                          Stream{"text", &c.text, c.d_text}, Stream{"pose", &c.pose, c.d_pose}}) {
+  for (const Stream& s :
+       {Stream{"speech", &c.speech, c.ast_content.mel_bins}, Stream{"text", &c.text, c.d_text},
+        Stream{"pose", &c.pose, c.d_pose}, Stream{"face", &c.face, c.d_face}}) {
     Result<Normalisation> n = ReadNormalisation(network, s.name, s.columns);
     if (!n.ok()) return n.status();
     *s.to = *std::move(n);
@@ -72,7 +80,29 @@ Result<ZsMstm1Config> ReadZsMstm1Config(const fb::Network& network) {
   return c;
 }
 
-void BindZsMstm1(Binder& binder, const ZsMstm1Config& c, ZsMstm1Weights* w) {
+namespace {
+
+void BindDense(Binder& binder, const ZsMstmConfig& c, LinearWeights* w) {
+  BindLinear(binder, "dense", c.d_model, c.ContentWidth() + c.StyleWidth(), w);
+}
+
+/// A decoder that puts out `columns` values a frame.
+void BindGenerator(Binder& binder, const ZsMstmConfig& c, std::int64_t columns,
+                   const char* embedding, bool own_dense, GeneratorWeights* w) {
+  if (own_dense) BindDense(binder, c, &w->dense);
+  if (c.decoder_mode == DecoderMode::kAutoregressive)
+    BindLinear(binder, embedding, c.d_model, c.Row(columns), &w->embedding);
+  w->decoder.resize(static_cast<std::size_t>(c.decoder_layers));
+  for (std::size_t i = 0; i < w->decoder.size(); ++i) {
+    BindDecoderLayer(binder, "decoder.layers." + std::to_string(i), c.d_model, c.decoder_ff,
+                     c.decoder_ln_eps, &w->decoder[i]);
+  }
+  BindLinear(binder, "head", c.Row(columns), c.d_model, &w->head);
+}
+
+}  // namespace
+
+void BindZsMstm(Binder& binder, const ZsMstmConfig& c, ZsMstmWeights* w) {
   {
     const Binder::Scope scope(binder, "ast_content.");
     BindAst(binder, c.ast_content, &w->ast_content);
@@ -86,15 +116,16 @@ void BindZsMstm1(Binder& binder, const ZsMstm1Config& c, ZsMstm1Weights* w) {
   BindMultihead(binder, "content_attention", c.ContentWidth(), &w->content_attention);
   BindMultihead(binder, "style_attention", c.StyleAttentionWidth(), &w->style_attention);
   BindLstmStack(binder, "pose_lstm", c.lstm_layers, c.d_pose, c.lstm_hidden, &w->pose_lstm);
-  BindLinear(binder, "dense", c.d_model, c.ContentWidth() + c.StyleWidth(), &w->dense);
-  if (c.decoder_mode == DecoderMode::kAutoregressive)
-    BindLinear(binder, "pose_embedding", c.d_model, c.PoseRow(), &w->pose_embedding);
-  w->decoder.resize(static_cast<std::size_t>(c.decoder_layers));
-  for (std::size_t i = 0; i < w->decoder.size(); ++i) {
-    BindDecoderLayer(binder, "decoder.layers." + std::to_string(i), c.d_model, c.decoder_ff,
-                     c.decoder_ln_eps, &w->decoder[i]);
+  if (!c.HasFace()) return BindGenerator(binder, c, c.d_pose, "pose_embedding", true, &w->pose);
+
+  BindLstmStack(binder, "face_lstm", c.lstm_layers, c.d_face, c.lstm_hidden, &w->face_lstm);
+  if (c.dense_shared) BindDense(binder, c, &w->pose.dense);
+  w->face.dense = w->pose.dense;
+  for (auto [name, columns, generator] : {std::tuple("pose_generator.", c.d_pose, &w->pose),
+                                          std::tuple("face_generator.", c.d_face, &w->face)}) {
+    const Binder::Scope scope(binder, name);
+    BindGenerator(binder, c, columns, "embedding", !c.dense_shared, generator);
   }
-  BindLinear(binder, "head", c.PoseRow(), c.d_model, &w->head);
 }
 
 }  // namespace gestus::models

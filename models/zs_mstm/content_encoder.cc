@@ -1,9 +1,9 @@
 // E_content (thesis 6.5.1): what is said, by voice and by words.
-#include "models/zs_mstm1/networks.h"
+#include "models/zs_mstm/networks.h"
 
 namespace gestus::models {
 
-Value ContentEncoder(Graph& g, const ZsMstm1Config& c, const ZsMstm1Weights& w, Value speech,
+Value ContentEncoder(Graph& g, const ZsMstmConfig& c, const ZsMstmWeights& w, Value speech,
                      Value text) {
   const Graph::Scope scope(g, "content");
   std::vector<Value> rows;

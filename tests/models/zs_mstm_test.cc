@@ -1,6 +1,6 @@
 // ZS-MSTM 1.0 as a whole, tiny: threads, agents, segments, styles, inputs that are refused, files
 // with damage.  Numbers are compared with PyTorch's in golden_test.cc.
-#include "models/zs_mstm1/zs_mstm1.h"
+#include "models/zs_mstm/zs_mstm.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 
 #include "models/run_support.h"
 #include "tests/engine/dense.h"
-#include "tests/models/tiny_zs_mstm1.h"
+#include "tests/models/tiny_zs_mstm.h"
 #include "tests/tolerance.h"
 
 namespace gestus::test {
@@ -22,7 +22,7 @@ using models::Array;
 using models::Arrays;
 using models::RunOptions;
 using models::RunReport;
-using models::ZsMstm1;
+using models::ZsMstm;
 
 constexpr std::int64_t kFrames = 8, kMel = 8, kText = 4, kPose = 6;
 
@@ -51,10 +51,10 @@ const Mode kModes[] = {
     {"SegmentParallel", fb::DecoderMode::Parallel, fb::Granularity::Segment, 2},
 };
 
-class ZsMstm1ModeTest : public testing::TestWithParam<Mode> {
+class ZsMstmModeTest : public testing::TestWithParam<Mode> {
  protected:
   static FileSpec File() {
-    TinyZsMstm1 c;
+    TinyZsMstm c;
     c.decoder_mode = GetParam().mode;
     c.granularity = GetParam().granularity;
     c.context_segments = GetParam().context;
@@ -64,10 +64,10 @@ class ZsMstm1ModeTest : public testing::TestWithParam<Mode> {
   }
   static std::int64_t Window() { return kFrames * GetParam().context; }
 };
-INSTANTIATE_TEST_SUITE_P(All, ZsMstm1ModeTest, testing::ValuesIn(kModes),
+INSTANTIATE_TEST_SUITE_P(All, ZsMstmModeTest, testing::ValuesIn(kModes),
                          [](const auto& test) { return test.param.name; });
 
-TEST_P(ZsMstm1ModeTest, TheSameBytesForAnyNumberOfThreadsAndRuns) {
+TEST_P(ZsMstmModeTest, TheSameBytesForAnyNumberOfThreadsAndRuns) {
   const auto network = MakeOrFail(File());
   const Arrays inputs = TinyInputs(3 * Window() - 2, 20, 5);
   const Arrays want = RunOrFail(*network, inputs);
@@ -81,22 +81,22 @@ TEST_P(ZsMstm1ModeTest, TheSameBytesForAnyNumberOfThreadsAndRuns) {
   }
 }
 
-TEST_P(ZsMstm1ModeTest, TheTypedWayGivesTheBytesOfTheNamedOne) {
+TEST_P(ZsMstmModeTest, TheTypedWayGivesTheBytesOfTheNamedOne) {
   const FileSpec spec = File();
   const auto network = MakeOrFail(spec);
   const Arrays inputs = TinyInputs(Window(), 2 * kFrames, 6);
   const Arrays want = RunOrFail(*network, inputs);
-  const auto model = ZsMstm1::Make(OpenOrFail(spec), "");
+  const auto model = ZsMstm::Make(OpenOrFail(spec), "");
   ASSERT_TRUE(model.ok()) << model.status().message();
-  const auto agent = ZsMstm1::NewAgent(*model);
+  const auto agent = ZsMstm::NewAgent(*model);
   ASSERT_TRUE(agent.ok());
   const auto at = [&](const char* name, std::int64_t row) {
     const Array& a = inputs.at(name);
     return a.f32.data() + row * a.shape[1];
   };
   for (const std::int64_t row : {std::int64_t{0}, kFrames})
-    (*agent)->AddStyleSegment(at("style_speech", row), at("style_text", row),
-                              at("style_pose", row));
+    (*agent)->AddStyleSegment(
+        {at("style_speech", row), at("style_text", row), at("style_pose", row)});
   std::vector<float> pose(static_cast<std::size_t>(Window() * kPose));
   (*agent)->Generate(at("speech", 0), at("text", 0), pose.data());
   EXPECT_TRUE(SameBytes(pose, want.at("pose").f32));
@@ -104,12 +104,12 @@ TEST_P(ZsMstm1ModeTest, TheTypedWayGivesTheBytesOfTheNamedOne) {
   EXPECT_EQ(std::memcmp((*agent)->style(), style.data(), style.size() * sizeof(float)), 0);
 }
 
-TEST_P(ZsMstm1ModeTest, AgentsOfOneModelDoNotTouchEachOther) {
-  const auto model = ZsMstm1::Make(OpenOrFail(File()), "");
+TEST_P(ZsMstmModeTest, AgentsOfOneModelDoNotTouchEachOther) {
+  const auto model = ZsMstm::Make(OpenOrFail(File()), "");
   ASSERT_TRUE(model.ok());
   const auto size = static_cast<std::size_t>(Window());
   const std::vector<float> text = Noise(Window() * kText, 3);
-  const auto run = [&](models::ZsMstm1Agent& agent, std::uint32_t seed) {
+  const auto run = [&](models::ZsMstmAgent& agent, std::uint32_t seed) {
     const std::vector<float> speech = Noise(Window() * kMel, seed);
     const std::vector<float> style = Noise((*model)->config().StyleWidth(), seed + 1);
     std::vector<float> pose(size * kPose);
@@ -117,11 +117,11 @@ TEST_P(ZsMstm1ModeTest, AgentsOfOneModelDoNotTouchEachOther) {
     agent.Generate(speech.data(), text.data(), pose.data());
     return pose;
   };
-  auto solo = ZsMstm1::NewAgent(*model);
+  auto solo = ZsMstm::NewAgent(*model);
   std::vector<std::vector<float>> want;
   for (std::uint32_t i = 0; i < 16; ++i) want.push_back(run(**solo, i));
-  std::vector<std::unique_ptr<models::ZsMstm1Agent>> agents;
-  for (int i = 0; i < 16; ++i) agents.push_back(*ZsMstm1::NewAgent(*model));
+  std::vector<std::unique_ptr<models::ZsMstmAgent>> agents;
+  for (int i = 0; i < 16; ++i) agents.push_back(*ZsMstm::NewAgent(*model));
   const std::vector<float> garbage(size * kMel, std::numeric_limits<float>::quiet_NaN());
   std::vector<float> lost(size * kPose);
   for (int round = 0; round < 3; ++round) {
@@ -134,7 +134,7 @@ TEST_P(ZsMstm1ModeTest, AgentsOfOneModelDoNotTouchEachOther) {
   }
 }
 
-TEST_P(ZsMstm1ModeTest, APartialLastSegmentIsMovedBack) {
+TEST_P(ZsMstmModeTest, APartialLastSegmentIsMovedBack) {
   const auto network = MakeOrFail(File());
   const std::int64_t total = 2 * Window() + 3;
   Arrays inputs = TinyInputs(total, kFrames, 9);
@@ -157,7 +157,7 @@ TEST_P(ZsMstm1ModeTest, APartialLastSegmentIsMovedBack) {
             0);
 }
 
-TEST_P(ZsMstm1ModeTest, AStreamShorterThanASegmentIsFilledUp) {
+TEST_P(ZsMstmModeTest, AStreamShorterThanASegmentIsFilledUp) {
   const auto network = MakeOrFail(File());
   Arrays inputs = TinyInputs(3, kFrames, 9);
   RunReport report;
@@ -177,8 +177,8 @@ TEST_P(ZsMstm1ModeTest, AStreamShorterThanASegmentIsFilledUp) {
       0);
 }
 
-TEST(ZsMstm1StyleTest, IsTheMeanOverTheSegmentsOfTheClip) {
-  const auto network = MakeOrFail(TinyZsMstm1().File());
+TEST(ZsMstmStyleTest, IsTheMeanOverTheSegmentsOfTheClip) {
+  const auto network = MakeOrFail(TinyZsMstm().File());
   const Arrays clip = TinyInputs(0, 3 * kFrames, 4);
   const Array style = RunOrFail(*network, clip).at("style");
   std::vector<double> mean(style.f32.size());
@@ -196,8 +196,8 @@ TEST(ZsMstm1StyleTest, IsTheMeanOverTheSegmentsOfTheClip) {
   for (std::size_t i = 0; i < mean.size(); ++i) EXPECT_NEAR(style.f32[i], mean[i], 9 * kEps * 4);
 }
 
-TEST(ZsMstm1StyleTest, KeptAndGivenAgainIsTheSame) {
-  const auto network = MakeOrFail(TinyZsMstm1().File());
+TEST(ZsMstmStyleTest, KeptAndGivenAgainIsTheSame) {
+  const auto network = MakeOrFail(TinyZsMstm().File());
   Arrays inputs = TinyInputs(kFrames, kFrames, 4);
   const Arrays first = RunOrFail(*network, inputs);
   for (const char* name : {"style_speech", "style_text", "style_pose"}) inputs.erase(name);
@@ -207,27 +207,27 @@ TEST(ZsMstm1StyleTest, KeptAndGivenAgainIsTheSame) {
   EXPECT_TRUE(SameBytes(first.at("style").f32, second.at("style").f32));
 }
 
-TEST(ZsMstm1StyleTest, ResetForgetsEverythingEvenNan) {
-  const auto model = ZsMstm1::Make(OpenOrFail(TinyZsMstm1().File()), "");
+TEST(ZsMstmStyleTest, ResetForgetsEverythingEvenNan) {
+  const auto model = ZsMstm::Make(OpenOrFail(TinyZsMstm().File()), "");
   ASSERT_TRUE(model.ok());
-  const auto agent = *ZsMstm1::NewAgent(*model), fresh = *ZsMstm1::NewAgent(*model);
+  const auto agent = *ZsMstm::NewAgent(*model), fresh = *ZsMstm::NewAgent(*model);
   const std::vector<float> speech = Noise(kFrames * kMel, 1), text = Noise(kFrames * kText, 2);
   const std::vector<float> pose = Noise(kFrames * kPose, 3);
   const std::vector<float> nan(kFrames * kMel, std::numeric_limits<float>::quiet_NaN());
   const auto width = static_cast<std::size_t>((*model)->config().StyleWidth());
   for (std::size_t i = 0; i < width; ++i) EXPECT_EQ(fresh->style()[i], 0.0f);
-  agent->AddStyleSegment(nan.data(), text.data(), pose.data());
+  agent->AddStyleSegment({nan.data(), text.data(), pose.data()});
   EXPECT_TRUE(std::isnan(agent->style()[0]));
   agent->ResetStyle();
-  agent->AddStyleSegment(speech.data(), text.data(), pose.data());
-  fresh->AddStyleSegment(speech.data(), text.data(), pose.data());
+  agent->AddStyleSegment({speech.data(), text.data(), pose.data()});
+  fresh->AddStyleSegment({speech.data(), text.data(), pose.data()});
   EXPECT_EQ(std::memcmp(agent->style(), fresh->style(), width * sizeof(float)), 0);
 }
 
-TEST(ZsMstm1NormalisationTest, ScalesInputsAndUndoesTheOutput) {
+TEST(ZsMstmNormalisationTest, ScalesInputsAndUndoesTheOutput) {
   // Statistics by column on the pose: what the network gives without them, times deviation, plus
   // mean; on the speech: the same as normalised input without them.
-  const FileSpec plain = TinyZsMstm1().File();
+  const FileSpec plain = TinyZsMstm().File();
   FileSpec scaled = plain;
   const std::vector<float> mean = {1, -2, 3, 0, 0.5f, 10}, deviation = {1, 2, 0.5f, 4, 1, 0.25f};
   scaled.networks[0].statistics = {{"pose", mean, deviation, 1.0f}, {"speech", {3}, {0.25f}, 2.0f}};
@@ -245,8 +245,8 @@ TEST(ZsMstm1NormalisationTest, ScalesInputsAndUndoesTheOutput) {
   }
 }
 
-TEST(ZsMstm1TapsTest, AreNamedAndChangeNothing) {
-  const auto network = MakeOrFail(TinyZsMstm1().File());
+TEST(ZsMstmTapsTest, AreNamedAndChangeNothing) {
+  const auto network = MakeOrFail(TinyZsMstm().File());
   const Arrays inputs = TinyInputs(kFrames, kFrames, 4);
   const Arrays plain = RunOrFail(*network, inputs);
   RunReport report;
@@ -313,12 +313,12 @@ const InputCase kInputs[] = {
     {"Nothing", "style: missing", [](Arrays& a) { a.clear(); }},
 };
 
-class ZsMstm1InputTest : public testing::TestWithParam<InputCase> {};
-INSTANTIATE_TEST_SUITE_P(All, ZsMstm1InputTest, testing::ValuesIn(kInputs),
+class ZsMstmInputTest : public testing::TestWithParam<InputCase> {};
+INSTANTIATE_TEST_SUITE_P(All, ZsMstmInputTest, testing::ValuesIn(kInputs),
                          [](const auto& test) { return test.param.name; });
 
-TEST_P(ZsMstm1InputTest, IsRefusedByName) {
-  const auto network = MakeOrFail(TinyZsMstm1().File());
+TEST_P(ZsMstmInputTest, IsRefusedByName) {
+  const auto network = MakeOrFail(TinyZsMstm().File());
   Arrays inputs = TinyInputs(kFrames, kFrames, 4);
   GetParam().change(inputs);
   const auto outputs = network->Run(inputs, {}, nullptr);
@@ -328,8 +328,8 @@ TEST_P(ZsMstm1InputTest, IsRefusedByName) {
       << outputs.status().message();
 }
 
-TEST(ZsMstm1InputsTest, ResultsThatOverflowAreAnErrorNotNan) {
-  const auto network = MakeOrFail(TinyZsMstm1().File());
+TEST(ZsMstmInputsTest, ResultsThatOverflowAreAnErrorNotNan) {
+  const auto network = MakeOrFail(TinyZsMstm().File());
   Arrays inputs = TinyInputs(kFrames, 0, 4);
   inputs["style"] = models::MakeArray({17});
   for (float& v : inputs["style"].f32) v = 3e38f;
@@ -341,8 +341,8 @@ TEST(ZsMstm1InputsTest, ResultsThatOverflowAreAnErrorNotNan) {
   }
 }
 
-TEST(ZsMstm1OptionsTest, OutOfRangeIsAnError) {
-  const Bytes bytes = TinyZsMstm1().File().Build();
+TEST(ZsMstmOptionsTest, OutOfRangeIsAnError) {
+  const Bytes bytes = TinyZsMstm().File().Build();
   const auto file = WeightsFile::FromMemory(bytes.data(), bytes.size(), "tiny");
   ASSERT_TRUE(file.ok());
   const auto network = models::MakeNetwork(*file, "");
@@ -357,13 +357,13 @@ TEST(ZsMstm1OptionsTest, OutOfRangeIsAnError) {
 }
 
 // Damage whose checksum fits: refused, or a network whose results are finite or an error.
-TEST(ZsMstm1DamageTest, AnyBitOfTheMetadataMayFlip) {
+TEST(ZsMstmDamageTest, AnyBitOfTheMetadataMayFlip) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   constexpr std::size_t kStep = 131;
 #else
   constexpr std::size_t kStep = 17;
 #endif
-  const Bytes good = TinyZsMstm1().File().Build();
+  const Bytes good = TinyZsMstm().File().Build();
   const auto metadata = Get<std::uint64_t>(good, kMetadataSizeAt);
   const Arrays inputs = TinyInputs(kFrames, kFrames, 4);
   std::size_t ran = 0, refused = 0;

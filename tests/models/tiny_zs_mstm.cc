@@ -1,5 +1,5 @@
 // The tensors by PyTorch's names, as docs/format.md and the thesis' modules have them.
-#include "tests/models/tiny_zs_mstm1.h"
+#include "tests/models/tiny_zs_mstm.h"
 
 #include <gtest/gtest.h>
 
@@ -74,7 +74,7 @@ flatbuffers::Offset<fb::AstConfig> AddAst(flatbuffers::FlatBufferBuilder& b, con
 
 }  // namespace
 
-flatbuffers::Offset<void> TinyZsMstm1::Config(flatbuffers::FlatBufferBuilder& b) const {
+flatbuffers::Offset<void> TinyZsMstm::Config(flatbuffers::FlatBufferBuilder& b) const {
   const auto ast_content = AddAst(b, content);
   flatbuffers::Offset<fb::AstConfig> ast_style;
   if (with_style_ast) ast_style = AddAst(b, style);
@@ -86,7 +86,7 @@ flatbuffers::Offset<void> TinyZsMstm1::Config(flatbuffers::FlatBufferBuilder& b)
       .Union();
 }
 
-FileSpec TinyZsMstm1::File() const {
+FileSpec TinyZsMstm::File() const {
   FileSpec file;
   file.networks[0].type = fb::Config::ZsMstm1Config;
   file.networks[0].config = [c = *this](flatbuffers::FlatBufferBuilder& b) { return c.Config(b); };

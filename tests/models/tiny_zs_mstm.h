@@ -1,6 +1,6 @@
 // A ZS-MSTM 1.0 of a few thousand weights, made in memory, every field of its configuration open.
-#ifndef GESTUS_TESTS_MODELS_TINY_ZS_MSTM1_H_
-#define GESTUS_TESTS_MODELS_TINY_ZS_MSTM1_H_
+#ifndef GESTUS_TESTS_MODELS_TINY_ZS_MSTM_H_
+#define GESTUS_TESTS_MODELS_TINY_ZS_MSTM_H_
 
 #include <cstdint>
 #include <memory>
@@ -21,7 +21,7 @@ struct TinyAst {
   float ln_eps = 1e-6f, head_ln_eps = 1e-5f;
 };
 
-struct TinyZsMstm1 {
+struct TinyZsMstm {
   std::uint32_t frames = 8, d_text = 4, d_pose = 6, d_model = 8;
   TinyAst content{}, style{};
   bool with_style_ast = true, ast_shared = false;
@@ -49,4 +49,4 @@ models::Arrays TinyInputs(std::int64_t frames, std::int64_t clip_frames, std::ui
 
 }  // namespace gestus::test
 
-#endif  // GESTUS_TESTS_MODELS_TINY_ZS_MSTM1_H_
+#endif  // GESTUS_TESTS_MODELS_TINY_ZS_MSTM_H_
