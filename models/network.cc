@@ -6,6 +6,7 @@
 #include "models/bert/bert.h"
 #include "models/classifier/classifier.h"
 #include "models/discriminator/discriminator.h"
+#include "models/model1/model1.h"
 #include "models/zs_mstm/zs_mstm_network.h"
 #include "weights_generated.h"
 
@@ -47,6 +48,8 @@ Result<std::unique_ptr<Network>> MakeNetwork(std::shared_ptr<const WeightsFile> 
       return MakeBertNetwork(std::move(file), name, options);
     case fb::Config::ClassifierConfig:
       return MakeClassifierNetwork(std::move(file), name, options);
+    case fb::Config::Model1Config:
+      return MakeModel1Network(std::move(file), name, options);
     case fb::Config::DiscriminatorConfig:
       return MakeDiscriminatorNetwork(std::move(file), name, options);
     default:
