@@ -7,6 +7,7 @@
 #include "models/classifier/classifier.h"
 #include "models/discriminator/discriminator.h"
 #include "models/model1/model1.h"
+#include "models/model2/model2.h"
 #include "models/zs_mstm/zs_mstm_network.h"
 #include "weights_generated.h"
 
@@ -50,6 +51,8 @@ Result<std::unique_ptr<Network>> MakeNetwork(std::shared_ptr<const WeightsFile> 
       return MakeClassifierNetwork(std::move(file), name, options);
     case fb::Config::Model1Config:
       return MakeModel1Network(std::move(file), name, options);
+    case fb::Config::Model2Config:
+      return MakeModel2Network(std::move(file), name, options);
     case fb::Config::DiscriminatorConfig:
       return MakeDiscriminatorNetwork(std::move(file), name, options);
     default:

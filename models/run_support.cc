@@ -29,6 +29,13 @@ Status CheckOptions(const RunOptions& options) {
   if (options.threads < 1 || options.threads > kMaxThreads)
     return Status(Code::kInvalidArgument, "threads: " + std::to_string(options.threads) +
                                               ", expected 1 to " + std::to_string(kMaxThreads));
+  const Sampling& s = options.sampling;
+  if (!(s.temperature >= 0 && s.temperature <= 100))
+    return Status(Code::kInvalidArgument,
+                  "temperature: " + std::to_string(s.temperature) + ", expected 0 to 100");
+  if (s.top_k < 0)
+    return Status(Code::kInvalidArgument,
+                  "top-k: " + std::to_string(s.top_k) + ", expected 0 or more");
   return {};
 }
 

@@ -16,7 +16,7 @@ namespace gestus::models {
 /// required one is missing.
 Status CheckInputs(const Signature& signature, const Arrays& inputs);
 
-/// Repeats and threads in range.
+/// Repeats, threads and sampling in range.
 Status CheckOptions(const RunOptions& options);
 
 /// All values finite, or an error that names the array and the first place that is not.
