@@ -11,9 +11,10 @@ from converters.random_weights import random_weights
 
 torch = pytest.importorskip("torch")
 
-from converters.reference import blocks, model2  # noqa: E402  pylint: disable=wrong-import-position
-from converters.reference.run import build, run  # noqa: E402  pylint: disable=wrong-import-position
-from converters.reference.sampling import Sampler  # noqa: E402  pylint: disable=wrong-import-position
+# pylint: disable=wrong-import-position
+from converters.reference import blocks, model2  # noqa: E402
+from converters.reference.run import build, run  # noqa: E402
+from converters.reference.sampling import Sampler  # noqa: E402
 
 
 def make(changes=()):
@@ -41,7 +42,8 @@ def test_longer_sequences_begin_like_shorter_ones():
     network, module = make()
     _, short = make({"max_out": 4})
     inputs = networks.random_inputs(network, 1)
-    np.testing.assert_array_equal(run(short, inputs)["tokens"], run(module, inputs)["tokens"][:, :4])
+    long = run(module, inputs)["tokens"]
+    np.testing.assert_array_equal(run(short, inputs)["tokens"], long[:, :4])
 
 
 def test_speech_is_encoded_word_by_word_and_text_is_causal():
@@ -58,8 +60,8 @@ def test_speech_is_encoded_word_by_word_and_text_is_causal():
     changed = {"f0": inputs["f0"], "text": inputs["text"].copy()}
     changed["text"][1] += 1
     moved = run(module, changed, taps=True)["tap/cross/out"]
-    assert same(moved[0], base["tap/cross/out"][0]) and not np.allclose(moved[2],
-                                                                         base["tap/cross/out"][2])
+    still = base["tap/cross/out"]
+    assert same(moved[0], still[0]) and not np.allclose(moved[2], still[2])
 
 
 def test_a_word_of_text_repeated_is_one_key():
@@ -184,7 +186,8 @@ def test_parameters():
     assert count({"shared_norm": True}, "decoders.0.layers.0.") == 85_200
     assert count({}, "conv_decoder.") == 135_360
     assert count({}, "heads.0.") == 65 * 503
-    assert count({"master": "Speech", "attention_ff": 128, "shared_norm": True}, "cross.") == 140_224
+    released = {"master": "Speech", "attention_ff": 128, "shared_norm": True}
+    assert count(released, "cross.") == 140_224
 
 
 def test_channels_share_stacks():
