@@ -18,7 +18,7 @@ std::int64_t Model2Config::Stacks() const {
 
 std::int32_t Model2Config::F0Token(float hz) const {
   if (!(hz > 0)) return 0;
-  const double level = std::nearbyint((double{hz} - double{f0_minimum}) / double{f0_step});
+  const double level = std::floor((double{hz} - double{f0_minimum}) / double{f0_step} + 0.5);
   return static_cast<std::int32_t>(std::clamp(level, 1.0, static_cast<double>(f0_tokens - 1)));
 }
 

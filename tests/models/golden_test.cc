@@ -74,6 +74,18 @@ void ExpectClose(const std::string& name, const Array& got, const Array& want) {
   EXPECT_GT(largest, 0) << name << ": expected values are all zero and prove nothing";
 }
 
+/// Arrays "option/..." are options of the run.
+Sampling SamplingOf(const Arrays& golden) {
+  Sampling sampling;
+  if (const auto it = golden.find("option/temperature"); it != golden.end())
+    sampling.temperature = it->second.f32.at(0);
+  if (const auto it = golden.find("option/top_k"); it != golden.end())
+    sampling.top_k = it->second.i32.at(0);
+  if (const auto it = golden.find("option/seed"); it != golden.end())
+    sampling.seed = static_cast<std::uint32_t>(it->second.i32.at(0));
+  return sampling;
+}
+
 std::size_t Taps(const Arrays& arrays) {
   return static_cast<std::size_t>(std::count_if(
       arrays.begin(), arrays.end(), [](const auto& a) { return a.first.rfind("tap/", 0) == 0; }));
@@ -102,7 +114,7 @@ TEST_P(GoldenTest, AgreesWithPyTorch) {
 
   for (const bool taps : {false, true}) {
     RunReport report;
-    const auto outputs = (*network)->Run(inputs, {.taps = taps}, &report);
+    const auto outputs = (*network)->Run(inputs, {.sampling = SamplingOf(golden), .taps = taps}, &report);
     ASSERT_TRUE(outputs.ok()) << outputs.status().message();
     std::size_t compared = 0, tapped = 0;
     for (const auto& [output, array] : *outputs) {
