@@ -6,7 +6,7 @@ import json
 import os
 import sys
 
-from . import VERSION, networks
+from . import VERSION, kinds, networks
 from .errors import ConvertError
 
 
@@ -71,7 +71,7 @@ def _parser():
 
 
 def _network_options(parser):
-    parser.add_argument("--kind", choices=("zs_mstm1", "ast"), default="zs_mstm1")
+    parser.add_argument("--kind", choices=tuple(kinds.KINDS), default="zs_mstm1")
     parser.add_argument("--config", metavar="CONFIG.json",
                         help="fields of the configuration, and joints and normalisations, as the "
                              "schema names them; what is absent takes the schema's default")

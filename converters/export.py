@@ -4,7 +4,7 @@ import hashlib
 
 import numpy as np
 
-from . import VERSION, networks, shapes, weights_file
+from . import VERSION, kinds, networks, shapes, weights_file
 from .errors import ConvertError
 from .pos_embed import adapt_ast
 
@@ -109,11 +109,7 @@ def _float32(key, array):
 
 def _ast_parts(network):
     """(prefix of keys, configuration) of every AST inside the network."""
-    c = network["config"]
-    if shapes.kind_of(network) == "ast":
-        return [("", c)]
-    parts = [("ast_content.", c["ast_content"])]
-    return parts if c["ast_shared"] else parts + [("ast_style.", c["ast_style"])]
+    return kinds.of(network).ast_parts(network["config"])
 
 
 def _fill_ast(arrays, ast, network, report):

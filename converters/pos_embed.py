@@ -6,7 +6,7 @@ Recognised by the shapes: DeiT-384's 24 x 24 position embeddings, the AudioSet c
 
 import numpy as np
 
-from .shapes import patch_grid
+from .kinds.ast import patch_grid
 
 DEIT_GRID = (24, 24)
 AUDIOSET_GRID = (12, 101)

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..networks import PATS_JOINTS
+from ..kinds.zs_mstm1 import PATS_JOINTS
 
 NAMES = [name for name, _, _ in PATS_JOINTS]
 WRISTS = {"right": NAMES.index("RWrist"), "left": NAMES.index("LWrist")}

@@ -6,7 +6,7 @@ and PATS' joints.
 
 import numpy as np
 
-from ..networks import PATS_JOINTS
+from ..kinds.zs_mstm1 import PATS_JOINTS
 from .recordings import loudness
 
 _NAMES = [name for name, _, _ in PATS_JOINTS]

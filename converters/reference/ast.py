@@ -7,7 +7,7 @@ import torch
 from torch import nn
 from torch.nn import functional as F
 
-from ..shapes import patch_grid
+from ..kinds.ast import patch_grid
 from .blocks import no_tap, normalisation_of
 
 
@@ -108,7 +108,7 @@ class Ast(nn.Module):
         return out
 
 
-class AstNetwork(nn.Module):
+class Network(nn.Module):
     """AST on its own, with its normalisation: speech (T, F) -> embedding (d_out)."""
 
     inputs = ("speech",)

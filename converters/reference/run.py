@@ -1,37 +1,49 @@
 """Builds the reference of a network from arrays and runs it, in double precision."""
 
+import importlib
+
 import numpy as np
 import torch
 
-from ..shapes import kind_of
-from .ast import AstNetwork
+from .. import kinds
 from .blocks import no_tap
-from .zs_mstm1 import ZsMstm1
-
-_MODULES = {"ast": AstNetwork, "zs_mstm1": ZsMstm1}
 
 
 def build(network, arrays):
     """The module of a completed network with the weights `arrays` (key -> NumPy array)."""
+    module = importlib.import_module(f"{__package__}.{kinds.kind_of(network)}").Network
+    optional = {key: arrays[key] for key in kinds.of(network).optional if key in arrays}
     # Parameters are overwritten below: what they are initialised with only costs time.
     with torch.no_grad(), _without_initialisation():
-        module = _MODULES[kind_of(network)](network).double().eval()
-        module.weights().load_state_dict(
-            {key: torch.from_numpy(np.array(array)) for key, array in arrays.items()})
+        module = module(network, **optional).double().eval()
+        module.weights().load_state_dict({key: torch.from_numpy(np.array(array))
+                                          for key, array in arrays.items() if key not in optional})
     return module
 
 
-def run(module, inputs, taps=False):
-    """Outputs of the module (name -> float32 array) and, under "tap/<name>", its intermediates."""
+def run(module, inputs, taps=False, **options):
+    """Outputs of the module (name -> array) and, under "tap/<name>", its intermediates; `options`
+    are those of a run, such as the seed of what is drawn."""
     found = {}
 
     def tap(name, value):
-        found["tap/" + name] = value.numpy().astype(np.float32)
+        found["tap/" + name] = _to_numpy(value)
 
     with torch.no_grad():
-        tensors = {name: torch.from_numpy(np.asarray(x, np.float64)) for name, x in inputs.items()}
-        outputs = module(tensors, tap if taps else no_tap)
-    return {name: x.numpy().astype(np.float32) for name, x in outputs.items()} | found
+        tensors = {name: torch.from_numpy(np.asarray(x, _WIDE[np.asarray(x).dtype.kind]))
+                   for name, x in inputs.items()}
+        outputs = module(tensors, tap if taps else no_tap, **options)
+    return {name: _to_numpy(x) for name, x in outputs.items()} | found
+
+
+# Kind of number -> as the reference computes, and as files hold it.
+_WIDE = {"f": np.float64, "i": np.int64}
+_NARROW = {"f": np.float32, "i": np.int32}
+
+
+def _to_numpy(tensor):
+    array = tensor.numpy()
+    return array.astype(_NARROW[array.dtype.kind])
 
 
 class _without_initialisation:

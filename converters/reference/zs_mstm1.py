@@ -3,12 +3,12 @@
 import torch
 from torch import nn
 
-from ..shapes import d_style, pose_row, style_ast
+from ..kinds.zs_mstm1 import d_content, d_style, output_row, style_ast
 from .ast import Ast
 from .blocks import causal_mask, no_tap, normalisation_of, scoped, sinusoidal_positions
 
 
-class ZsMstm1(nn.Module):
+class Network(nn.Module):
     """speech (T, F), text (T, d_text) and style, or a style clip -> pose (T, d_pose).
 
     T and the length of the style clip are whole numbers of segments.
@@ -32,11 +32,11 @@ class ZsMstm1(nn.Module):
         self.pose_lstm = nn.LSTM(c["d_pose"], hidden, c["lstm_layers"])
         self.dense = nn.Linear(d_content + d_style(c), d)
         if c["decoder_mode"] == "Autoregressive":
-            self.pose_embedding = nn.Linear(pose_row(c), d)
+            self.pose_embedding = nn.Linear(output_row(c, c["d_pose"]), d)
         layer = nn.TransformerDecoderLayer(d, c["decoder_heads"], c["decoder_ff"], dropout=0.0,
                                            layer_norm_eps=c["decoder_ln_eps"])
         self.decoder = nn.TransformerDecoder(layer, c["decoder_layers"])
-        self.head = nn.Linear(d, pose_row(c))
+        self.head = nn.Linear(d, output_row(c, c["d_pose"]))
 
     def weights(self):
         return self

@@ -24,20 +24,19 @@ def make(changes, normalisations=(goldens.SPEECH, goldens.POSE)):
     return network, build(network, random_weights(network, 1)), networks.random_inputs(network, 2)
 
 
-@pytest.mark.parametrize("case", list(goldens.cases()), ids=lambda case: case[0])
+@pytest.mark.parametrize("case", list(goldens.cases()), ids=lambda case: case.name)
 def test_shapes_are_the_keys_of_the_module(case):
-    network = case[2]
+    network = case.network()
     module = build(network, random_weights(network, 1)).weights()
     found = {key: tuple(x.shape) for key, x in module.state_dict().items()}
     assert found == shapes.network_shapes(network)
 
 
-@pytest.mark.parametrize("case", list(goldens.cases()), ids=lambda case: case[0])
+@pytest.mark.parametrize("case", list(goldens.cases()), ids=lambda case: case.name)
 def test_goldens_are_up_to_date(case, tmp_path):
-    name = case[0]
-    goldens.make_case(str(tmp_path), *case)
-    with np.load(tmp_path / f"{name}.npz") as fresh, \
-            np.load(os.path.join(GOLDENS, f"{name}.npz")) as kept:
+    goldens.make_case(str(tmp_path), case)
+    with np.load(tmp_path / f"{case.name}.npz") as fresh, \
+            np.load(os.path.join(GOLDENS, f"{case.name}.npz")) as kept:
         assert fresh.files == kept.files
         for key in fresh.files:
             assert verify.relative_error(fresh[key], kept[key]) <= ROUNDING, key
@@ -47,9 +46,9 @@ def test_goldens_are_deterministic(tmp_path):
     case = next(goldens.cases())
     for folder in ("a", "b"):
         os.mkdir(tmp_path / folder)
-        goldens.make_case(str(tmp_path / folder), *next(goldens.cases()))
+        goldens.make_case(str(tmp_path / folder), next(goldens.cases()))
     for suffix in (".fb", ".npz"):
-        name = case[0] + suffix
+        name = case.name + suffix
         assert (tmp_path / "a" / name).read_bytes() == (tmp_path / "b" / name).read_bytes()
 
 
