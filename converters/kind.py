@@ -7,8 +7,9 @@ class Kind:
 
     config_type = ""    # its table in the schema's union Config
     optional = ()       # tensors that a file may have beside those of `shapes`
-    gains = {}          # random weights: factors on 1 / sqrt(fan in), by a part of the key
-    tables = {}         # random weights: standard deviations of tables and tokens, likewise
+    # Random weights, by the first regular expression that is found in the key:
+    gains = {}          # factors on 1 / sqrt(fan in)
+    tables = {}         # standard deviations of tables and tokens
 
     def defaults(self, config):
         """`config`, a new dictionary, with the defaults that a schema cannot state."""

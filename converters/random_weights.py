@@ -4,6 +4,7 @@ Fan-in scaling keeps every layer's signal at order one at full size and in the t
 the tests alike.  Each tensor has its own stream of numbers, from the seed and its name.
 """
 
+import re
 import zlib
 
 import numpy as np
@@ -38,5 +39,5 @@ def _tensor(kind, key, shape, seed):
 
 
 def _first(factors, key):
-    """The value of the first name in `factors` that is part of `key`."""
-    return next((factor for name, factor in factors.items() if name in key), None)
+    """The value of the first expression in `factors` that is found in `key`."""
+    return next((factor for name, factor in factors.items() if re.search(name, key)), None)

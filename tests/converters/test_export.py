@@ -6,7 +6,7 @@ import os
 import numpy as np
 import pytest
 
-from converters import goldens, networks, shapes, weights_file
+from converters import goldens, kinds, networks, shapes, weights_file
 from converters.__main__ import main
 from converters.errors import ConvertError
 from converters.random_weights import random_weights, save_checkpoint
@@ -185,3 +185,10 @@ def test_flatc_missing(monkeypatch):
     monkeypatch.setenv("PATH", "/nonexistent")
     with pytest.raises(ConvertError, match="install flatbuffers-compiler"):
         networks.default_network("ast")
+
+
+@pytest.mark.parametrize("kind", list(kinds.KINDS))
+def test_demo_networks_are_complete(kind):
+    network = networks.demo_network(kind)
+    assert kinds.kind_of(network) == kind and network["name"] == kind
+    assert networks.random_inputs(network, 1)

@@ -106,10 +106,11 @@ def test_autoregressive_rows_depend_on_the_rows_before():
     taps = run(module, inputs, taps=True)
     z = torch.from_numpy(taps["tap/generator/z"]).double()
     poses = torch.from_numpy(taps["tap/generator/head"]).double()
+    g = module.generator
     for j in (0, 1, 5):
         before = torch.cat([torch.zeros(1, 6, dtype=torch.float64), poses[:j]])
         with torch.no_grad():
-            row = module.head(module.decode(module.pose_embedding(before), z, blocks.no_tap))[-1]
+            row = g.head(g.decode(g.embedding(before), z, blocks.no_tap))[-1]
         assert verify.relative_error(row.numpy(), poses[j].numpy()) < 1e-5
 
 
@@ -122,7 +123,7 @@ def test_targets_are_causal(mode, sees):
         target = torch.cat([torch.zeros_like(z[:1]), z[:-1]]) if mode != "Parallel" else z
         changed = target.clone()
         changed[sees:] += 1
-        a, b = (module.decode(x, z, blocks.no_tap) for x in (target, changed))
+        a, b = (module.generator.decode(x, z, blocks.no_tap) for x in (target, changed))
     assert torch.equal(a[:sees], b[:sees]) and not torch.allclose(a[sees:], b[sees:])
 
 
