@@ -31,6 +31,11 @@ class Checkpoint:
     def name(self):
         return os.path.basename(self.path)
 
+    def why_refused(self, key):
+        """Why the layer that `key` names has no tensors, or None."""
+        layer = key.rpartition(".")[0]
+        return f"{layer} is refused: {self.refused[layer]}" if layer in self.refused else None
+
 
 def read_checkpoint(path):
     """The Checkpoint in `path`; refuses what is damaged, unusual or hostile."""

@@ -1,6 +1,7 @@
 """Runs a parser written in C in a process of its own, so that a file that breaks it gives a
 sentence here instead of the end of the converters."""
 
+import faulthandler
 import json
 import os
 import resource
@@ -36,11 +37,13 @@ def arrays_of(function, path, memory, seconds):
 
 def _child(function, path, memory, seconds, channel):
     code = 1
+    faulthandler.disable()
     try:
         with open("/proc/self/statm", encoding="ascii") as file:
             used = int(file.read().split()[0]) * resource.getpagesize()
+        spent = int(sum(resource.getrusage(resource.RUSAGE_SELF)[:2]))
         _limit(resource.RLIMIT_AS, used + memory)
-        _limit(resource.RLIMIT_CPU, int(sum(resource.getrusage(resource.RUSAGE_SELF)[:2])) + seconds)
+        _limit(resource.RLIMIT_CPU, spent + seconds)
         _limit(resource.RLIMIT_CORE, 0)
         try:
             value, arrays = function(path)
