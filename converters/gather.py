@@ -28,10 +28,14 @@ class Found:
 
     def __init__(self):
         self.arrays, self.origins, self.epsilons = {}, {}, {}
+        self.offered = {}  # their key -> (shape, what ours would be), used or not
 
     def add(self, key, source, checkpoint, scheme=None, where=""):
         self.arrays[key] = _assemble(key, source, checkpoint)
         self.origins[key] = tuple(where + theirs for theirs in source.keys)
+        for theirs in source.keys:
+            if theirs not in checkpoint.implied:
+                self.offered[where + theirs] = (checkpoint.tensors[theirs].shape, key)
         layer = source.keys[0].rpartition(".")[0]
         epsilon = checkpoint.epsilons.get(layer)
         if epsilon is None and scheme is not None and _NORM.search(key):
@@ -82,6 +86,9 @@ def _named(checkpoint, network, wanted, given, report):
         sources = {ours: source for ours, source in sources.items()
                    if ours in wanted or not taken.issuperset(source.keys)} | mapped
     found = Found()
+    for key, array in checkpoint.tensors.items():
+        if key not in checkpoint.implied:
+            found.offered[key] = (array.shape, key)
     for ours, source in sources.items():
         found.add(ours, source, checkpoint, schemes.get(ours))
     return found
@@ -128,15 +135,13 @@ def _fill_ast(found, ast, network, report):
     """Gives every AST of the network that the checkpoint lacks the tensors of `ast`."""
     named = names.canonical(ast.tensors, [names.AST])
     _note(named, f"{ast.name}: ", report)
-    for prefix, config in _ast_parts(network):
+    for prefix, _ in _ast_parts(network):
         if any(key.startswith(prefix) for key in found.arrays):
             report.append(f"{prefix}*: from the checkpoint, {ast.name} is not used for it")
             continue
         report.append(f"{prefix}*: from {ast.name}")
         for key, source in named.sources.items():
-            # A head of the audio classes of that checkpoint says nothing here.
-            if not key.startswith("mlp_head.") or config["head"] != "None":
-                found.add(prefix + key, source, ast, named.scheme, f"{ast.name}: ")
+            found.add(prefix + key, source, ast, named.scheme, f"{ast.name}: ")
 
 
 # --------------------------------------------------------------------------------------- the proof
@@ -159,15 +164,12 @@ def _match(found, wanted, checkpoint, network, allow_unused, report):
         else:
             report.used[key] = found.origins[key]
     used = {theirs for key in wanted for theirs in found.origins.get(key, ())}
-    for key, array in found.arrays.items():
-        if key in wanted or used.issuperset(found.origins[key]):
+    for theirs, (shape, ours) in found.offered.items():
+        if theirs in used:
             continue
-        theirs = ", ".join(found.origins[key])
-        if theirs in checkpoint.implied:
-            continue
-        report.unused[theirs] = (array.shape, None)
-        if not (allow_unused or _known_unused(key, network)):
-            faults.append(f"{theirs}: {array.shape}, not part of this network "
+        report.unused[theirs] = (shape, None)
+        if not (allow_unused or _known_unused(ours, network)):
+            faults.append(f"{theirs}: {shape}, not part of this network "
                           "(--allow-unused leaves it out)")
     explained = {key.rpartition(".")[0] for key in report.missing}
     for layer, why in checkpoint.refused.items():
