@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The command line: export, random, verify, inspect."""
+"""The command line: export, random, bundle, verify, inspect."""
 
 import argparse
 import json
@@ -63,6 +63,12 @@ def _parser():
                         help="also save the weights with torch.save")
     random.add_argument("--no-self-test", action="store_true")
     random.set_defaults(run=_random)
+
+    bundle = commands.add_parser("bundle", help="weights files -> one file with all networks")
+    bundle.add_argument("weights", nargs="+", metavar="[NAME=]WEIGHTS.fb",
+                        help="NAME is the network's new name, which must differ from the others'")
+    bundle.add_argument("-o", "--output", required=True, metavar="BUNDLE.fb")
+    bundle.set_defaults(run=_bundle)
 
     verify = commands.add_parser("verify", help="compare the engine with PyTorch")
     verify.add_argument("weights", metavar="WEIGHTS.fb")
@@ -161,6 +167,11 @@ def _random(options):
         save_checkpoint(options.checkpoint_out, tensors)
         report.append(f"{options.checkpoint_out}: {len(tensors)} tensors")
     _done(report, options.output)
+
+
+def _bundle(options):
+    from .bundle import bundle
+    _done(bundle(options.weights, options.output), options.output)
 
 
 def _verify(options):

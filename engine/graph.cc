@@ -57,12 +57,16 @@ const char* Name(Op op) {
       return "patches";
     case Op::kPadRows:
       return "pad_rows";
-    case Op::kStoreRow:
-      return "store_row";
+    case Op::kStoreRows:
+      return "store_rows";
+    case Op::kLastRows:
+      return "last_rows";
     case Op::kStepRow:
       return "step_row";
     case Op::kPreviousRow:
       return "previous_row";
+    case Op::kPick:
+      return "pick";
   }
   return "unknown";
 }
@@ -128,16 +132,25 @@ Node Graph::NewNode(Op op, std::vector<int> inputs) const {
   return node;
 }
 
-Value Graph::Emit(Node node, Shape shape) {
-  for (int in : node.inputs) {
-    const DType wanted = node.op == Op::kGather ? DType::kI32 : DType::kF32;
-    const DType found = info({in}).dtype;
+Value Graph::Emit(Node node, Shape shape, DType dtype) {
+  for (std::size_t i = 0; i < node.inputs.size(); ++i) {
+    const DType found = info({node.inputs[i]}).dtype;
+    // Ids are looked up; rows are moved as what they are.
+    const DType wanted =
+        node.op == Op::kGather ? DType::kI32
+        : node.op == Op::kPreviousRow || node.op == Op::kLastRows || node.op == Op::kStoreRows
+            ? dtype
+            : DType::kF32;
     if (!Expect(found == wanted, std::string(gestus::Name(node.op)) + ": input is " +
                                      gestus::Name(found) + ", expected " + gestus::Name(wanted)))
       return {};
   }
-  const Value out = NewValue(shape);
-  node.output = out.id;
+  if (!Expect(nodes_.size() < kMaxNodes,
+              "more than " + std::to_string(kMaxNodes) + " ops, expected a smaller network"))
+    return {};
+  // An op that changes a buffer in place has its output already.
+  if (node.output < 0) node.output = NewValue(shape, dtype).id;
+  const Value out{node.output};
   nodes_.push_back(std::move(node));
   return out;
 }
@@ -449,24 +462,35 @@ void Graph::EndLoop() {
   loop_ = -1;
 }
 
-Value Graph::Buffer(Shape shape) {
+Value Graph::Buffer(Shape shape, DType dtype) {
   if (!GoodShape("buffer", shape) || !Expect(loop_ < 0, "buffer: declare it before the loop"))
     return {};
-  const Value v = NewValue(shape);
+  const Value v = NewValue(shape, dtype);
   values_.back().buffer = true;
   return v;
 }
 
-void Graph::StoreRow(Value buffer, Value row) {
-  if (Bad(buffer) || Bad(row)) return;
-  if (!Expect(info(buffer).buffer && loop_ >= 0 && BatchOf(shape(buffer)) == 1 &&
-                  shape(row).Rows() == 1 && shape(row).Cols() == shape(buffer).Cols() &&
-                  shape(buffer).Rows() >= loops_[static_cast<std::size_t>(loop_)].count,
-              "store_row: row " + shape(row).ToString() + " into " + shape(buffer).ToString()))
+bool Graph::HoldsSteps(const char* op, Value buffer) {
+  return Expect(loop_ >= 0 && info(buffer).buffer && BatchOf(shape(buffer)) == 1 &&
+                    shape(buffer).Rows() >= loops_[static_cast<std::size_t>(loop_)].count,
+                std::string(op) + ": expected a buffer with a row for each step of the loop");
+}
+
+void Graph::StoreRows(Value buffer, Value rows) {
+  if (Bad(buffer) || Bad(rows) || !HoldsSteps("store_rows", buffer)) return;
+  if (!Expect(BatchOf(shape(rows)) == 1 && shape(rows).Cols() == shape(buffer).Cols(),
+              "store_rows: " + shape(rows).ToString() + " into " + shape(buffer).ToString()))
     return;
-  Node node = NewNode(Op::kStoreRow, {row.id});
+  Node node = NewNode(Op::kStoreRows, {rows.id});
   node.output = buffer.id;
-  nodes_.push_back(std::move(node));
+  Emit(std::move(node), shape(buffer), info(buffer).dtype);
+}
+
+Value Graph::LastRows(Value buffer, std::int64_t count) {
+  if (Bad(buffer) || !HoldsSteps("last_rows", buffer)) return {};
+  if (!Expect(count > 0, "last_rows: expected one row or more")) return {};
+  return Emit(NewNode(Op::kLastRows, {buffer.id}), {count, shape(buffer).Cols()},
+              info(buffer).dtype);
 }
 
 Value Graph::StepRow(Value x) {
@@ -478,11 +502,29 @@ Value Graph::StepRow(Value x) {
   return Emit(NewNode(Op::kStepRow, {x.id}), {1, shape(x).Cols()});
 }
 
-Value Graph::PreviousRow(Value buffer) {
-  if (Bad(buffer)) return {};
-  if (!Expect(loop_ >= 0 && info(buffer).buffer, "previous_row: expected a buffer in a loop"))
+Value Graph::PreviousRow(Value buffer, Value first) {
+  if (Bad(buffer) || !HoldsSteps("previous_row", buffer)) return {};
+  Node node = NewNode(Op::kPreviousRow, {buffer.id});
+  const std::int64_t cols = shape(buffer).Cols();
+  if (first.id >= 0) {
+    if (Bad(first) || !Expect(shape(first).NumElements() == cols,
+                              "previous_row: first row " + shape(first).ToString() + " for " +
+                                  shape(buffer).ToString()))
+      return {};
+    node.inputs.push_back(first.id);
+  }
+  return Emit(std::move(node), {1, cols}, info(buffer).dtype);
+}
+
+Value Graph::Pick(Value logits, Value controls, Value u) {
+  if (Bad(logits) || Bad(controls) || Bad(u)) return {};
+  if (!Expect(shape(logits).Rows() == 1 && shape(controls) == Shape{1, 2} &&
+                  shape(u).NumElements() == 1,
+              "pick: logits " + shape(logits).ToString() + ", controls " +
+                  shape(controls).ToString() + ", u " + shape(u).ToString() +
+                  ", expected (1, V), (1, 2) and (1, 1)"))
     return {};
-  return Emit(NewNode(Op::kPreviousRow, {buffer.id}), {1, shape(buffer).Cols()});
+  return Emit(NewNode(Op::kPick, {logits.id, controls.id, u.id}), {1, 1}, DType::kI32);
 }
 
 void Graph::Output(const std::string& name, Value x) {

@@ -75,9 +75,11 @@ enum class Op : std::uint8_t {
   kGather,
   kPatches,
   kPadRows,
-  kStoreRow,
+  kStoreRows,
+  kLastRows,
   kStepRow,
   kPreviousRow,
+  kPick,
 };
 const char* Name(Op op);
 
@@ -85,7 +87,7 @@ const char* Name(Op op);
 struct Node {
   Op op;
   std::vector<int> inputs;  ///< value ids; kLinear: x[, residual]; kAttention: q, k, v[, key bias]
-  int output = -1;          ///< kStoreRow: the buffer, which it changes in place
+  int output = -1;          ///< kStoreRows: the buffer, which it changes in place
   std::string scope;        ///< where in the network, "content/ast/block.3"
   int loop = -1;            ///< index of the enclosing loop
 
@@ -168,10 +170,18 @@ class Graph {
   // step; a Buffer keeps its rows.
   void BeginLoop(std::int64_t count);
   void EndLoop();
-  Value Buffer(Shape shape);
-  void StoreRow(Value buffer, Value row);  ///< buffer[step] = row
-  Value StepRow(Value x);                  ///< x[step]
-  Value PreviousRow(Value buffer);         ///< buffer[step - 1]; zeros at step 0
+  Value Buffer(Shape shape, DType dtype = DType::kF32);
+  /// The n rows become rows step - n + 1 to step of the buffer; those before row 0 are dropped.
+  void StoreRows(Value buffer, Value rows);
+  /// Rows step - count + 1 to step of the buffer, zeros in place of those before row 0.
+  Value LastRows(Value buffer, std::int64_t count);
+  Value StepRow(Value x);  ///< x[step]
+  /// buffer[step - 1]; at step 0 the row `first`, or zeros when there is none.
+  Value PreviousRow(Value buffer, Value first = {});
+  /// One index of the row `logits`, int32 (1, 1).  controls (1, 2) holds temperature and top-k:
+  /// temperature 0 takes the largest logit, the first of equals; otherwise an index is drawn from
+  /// softmax(logits / temperature) over the k largest logits (0: over all) with u (1, 1) in [0, 1).
+  Value Pick(Value logits, Value controls, Value u);
 
   void Output(const std::string& name, Value x);
   /// Names an intermediate, so that it can be compared with another implementation's.
@@ -191,6 +201,8 @@ class Graph {
   };
 
   const Status& status() const { return status_; }
+  /// More ops than any real network has: a configuration that asks for more is refused.
+  static constexpr std::size_t kMaxNodes = 1 << 14;
   /// Makes the graph's status an error that is found outside, such as in a configuration.
   void Fail(const std::string& message);
   const Shape& shape(Value x) const;
@@ -211,12 +223,13 @@ class Graph {
     return x.id >= 0 && static_cast<std::size_t>(x.id) < values_.size();
   }
   bool GoodShape(const char* op, const Shape& shape);
+  bool HoldsSteps(const char* op, Value buffer);
   const ValueInfo& info(Value x) const { return values_[static_cast<std::size_t>(x.id)]; }
   Value NewValue(Shape shape, DType dtype = DType::kF32);
   Value View(Value x, Shape shape, std::ptrdiff_t offset, std::ptrdiff_t row_stride,
              std::ptrdiff_t batch_stride);
   Node NewNode(Op op, std::vector<int> inputs) const;
-  Value Emit(Node node, Shape shape);
+  Value Emit(Node node, Shape shape, DType dtype = DType::kF32);
   float* Own(std::size_t floats);
   Value OwnedConstant(float* data, Shape shape);
   bool Expect(bool holds, const std::string& message);

@@ -42,6 +42,18 @@ class ConfigReader {
     return value;
   }
 
+  /// A finite slope, such as LeakyReLU's.
+  float Slope(const char* field, float value) {
+    if (!(value >= -10.0f && value <= 10.0f)) Fail(field, std::to_string(value), "-10 to 10");
+    return value;
+  }
+
+  float Rate(const char* field, float value) {
+    if (!(value >= 1.0f && value <= 1000.0f))
+      Fail(field, std::to_string(value), "1 to 1000 frames a second");
+    return value;
+  }
+
   void Fail(const char* field, const std::string& found, const std::string& expected) {
     if (status_.ok())
       status_ = Status(Code::kBadWeights,

@@ -2,7 +2,13 @@
 #include "models/network.h"
 
 #include "models/ast/ast_network.h"
-#include "models/zs_mstm1/zs_mstm1_network.h"
+#include "models/autoencoder/autoencoder.h"
+#include "models/bert/bert.h"
+#include "models/classifier/classifier.h"
+#include "models/discriminator/discriminator.h"
+#include "models/model1/model1.h"
+#include "models/model2/model2.h"
+#include "models/zs_mstm/zs_mstm_network.h"
 #include "weights_generated.h"
 
 namespace gestus::models {
@@ -33,9 +39,22 @@ Result<std::unique_ptr<Network>> MakeNetwork(std::shared_ptr<const WeightsFile> 
   }
   switch (network->config_type()) {
     case fb::Config::ZsMstm1Config:
-      return MakeZsMstm1Network(std::move(file), name, options);
+    case fb::Config::ZsMstm2Config:
+      return MakeZsMstmNetwork(std::move(file), name, options);
     case fb::Config::AstConfig:
       return MakeAstNetwork(std::move(file), name, options);
+    case fb::Config::AutoencoderConfig:
+      return MakeAutoencoderNetwork(std::move(file), name, options);
+    case fb::Config::BertConfig:
+      return MakeBertNetwork(std::move(file), name, options);
+    case fb::Config::ClassifierConfig:
+      return MakeClassifierNetwork(std::move(file), name, options);
+    case fb::Config::Model1Config:
+      return MakeModel1Network(std::move(file), name, options);
+    case fb::Config::Model2Config:
+      return MakeModel2Network(std::move(file), name, options);
+    case fb::Config::DiscriminatorConfig:
+      return MakeDiscriminatorNetwork(std::move(file), name, options);
     default:
       break;
   }

@@ -46,11 +46,19 @@ struct Signature {
   std::vector<ArraySpec> outputs;
 };
 
+/// How networks that choose among tokens choose.
+struct Sampling {
+  float temperature = 0;   ///< 0: the likeliest token; higher: more variety
+  int top_k = 0;           ///< how many of the likeliest tokens may be drawn; 0: all
+  std::uint32_t seed = 0;  ///< the same seed draws the same tokens
+};
+
 struct RunOptions {
   int threads = 1;
   int repeat = 1;        ///< how often each segment runs; the report holds every time
   bool profile = false;  ///< fills RunReport::ops
-  bool taps = false;     ///< adds every named intermediate to the outputs, as "tap/<name>"
+  Sampling sampling{};
+  bool taps = false;  ///< adds every named intermediate to the outputs, as "tap/<name>"
   /// Called after each segment, from the calling thread.
   std::function<void(std::size_t done, std::size_t total)> progress{};
 };

@@ -22,6 +22,23 @@ Status CheckInputs(const Signature& signature, const Arrays& inputs) {
   return {};
 }
 
+Status CheckOptions(const RunOptions& options) {
+  if (options.repeat < 1)
+    return Status(Code::kInvalidArgument,
+                  "repeat: " + std::to_string(options.repeat) + ", expected 1 or more");
+  if (options.threads < 1 || options.threads > kMaxThreads)
+    return Status(Code::kInvalidArgument, "threads: " + std::to_string(options.threads) +
+                                              ", expected 1 to " + std::to_string(kMaxThreads));
+  const Sampling& s = options.sampling;
+  if (!(s.temperature >= 0 && s.temperature <= 100))
+    return Status(Code::kInvalidArgument,
+                  "temperature: " + std::to_string(s.temperature) + ", expected 0 to 100");
+  if (s.top_k < 0)
+    return Status(Code::kInvalidArgument,
+                  "top-k: " + std::to_string(s.top_k) + ", expected 0 or more");
+  return {};
+}
+
 Status CheckFinite(const std::string& name, const Array& array, Code code) {
   const std::int64_t cols = array.shape.empty() ? 1 : array.shape.back();
   for (std::size_t i = 0; i < array.f32.size(); ++i) {
@@ -34,13 +51,47 @@ Status CheckFinite(const std::string& name, const Array& array, Code code) {
   return {};
 }
 
-Array MakeArray(std::vector<std::int64_t> shape) {
+Array MakeArray(std::vector<std::int64_t> shape, DType dtype) {
   Array a;
-  std::int64_t n = 1;
-  for (std::int64_t d : shape) n *= d;
-  a.f32.resize(static_cast<std::size_t>(n));
+  std::size_t n = 1;
+  for (std::int64_t d : shape) n *= static_cast<std::size_t>(d);
+  if (dtype == DType::kI32)
+    a.i32.resize(n);
+  else
+    a.f32.resize(n);
+  a.dtype = dtype;
   a.shape = std::move(shape);
   return a;
+}
+
+ArraySpec Spec(const std::string& name, std::vector<std::int64_t> shape,
+               std::vector<std::string> axes, const std::string& unit, const std::string& meaning) {
+  ArraySpec spec;
+  spec.name = name;
+  spec.shape = std::move(shape);
+  spec.axes = std::move(axes);
+  spec.unit = unit;
+  spec.meaning = meaning;
+  return spec;
+}
+
+void CopyIn(const ValueView& to, const float* from) {
+  const auto cols = static_cast<std::size_t>(to.shape.Cols());
+  for (std::int64_t r = 0; r < to.shape.Rows(); ++r)
+    std::memcpy(to.f32 + r * to.row_stride, from + r * to.shape.Cols(), cols * sizeof(float));
+}
+
+void CopyOut(float* to, const ValueView& from) {
+  const auto cols = static_cast<std::size_t>(from.shape.Cols());
+  for (std::int64_t r = 0; r < from.shape.Rows(); ++r)
+    std::memcpy(to + r * from.shape.Cols(), from.f32 + r * from.row_stride, cols * sizeof(float));
+}
+
+void CopyOut(std::int32_t* to, const ValueView& from) {
+  const auto cols = static_cast<std::size_t>(from.shape.Cols());
+  for (std::int64_t r = 0; r < from.shape.Rows(); ++r)
+    std::memcpy(to + r * from.shape.Cols(), from.i32 + r * from.row_stride,
+                cols * sizeof(std::int32_t));
 }
 
 void TimedRun(const RunOptions& options, RunReport* report, const std::function<void()>& run) {
@@ -60,9 +111,7 @@ void CopyTaps(const Session& session, Arrays* outputs) {
     const ValueView view = session.Output(out.name);
     const std::int64_t rows = view.shape.Rows(), cols = view.shape.Cols();
     Array a = MakeArray({rows, cols});
-    for (std::int64_t r = 0; r < rows; ++r)
-      std::memcpy(a.f32.data() + r * cols, view.f32 + r * view.row_stride,
-                  static_cast<std::size_t>(cols) * sizeof(float));
+    CopyOut(a.f32.data(), view);
     (*outputs)[out.name] = std::move(a);
   }
 }

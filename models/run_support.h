@@ -5,6 +5,7 @@
 #include <functional>
 #include <initializer_list>
 #include <string>
+#include <vector>
 
 #include "engine/session.h"
 #include "models/network.h"
@@ -15,11 +16,23 @@ namespace gestus::models {
 /// required one is missing.
 Status CheckInputs(const Signature& signature, const Arrays& inputs);
 
+/// Repeats, threads and sampling in range.
+Status CheckOptions(const RunOptions& options);
+
 /// All values finite, or an error that names the array and the first place that is not.
 Status CheckFinite(const std::string& name, const Array& array, Code code);
 
-/// A float32 array of that shape, zeroed.
-Array MakeArray(std::vector<std::int64_t> shape);
+/// An array of that shape, zeroed.
+Array MakeArray(std::vector<std::int64_t> shape, DType dtype = DType::kF32);
+
+/// One array of a signature: `axes` name the dimensions of `shape`.
+ArraySpec Spec(const std::string& name, std::vector<std::int64_t> shape,
+               std::vector<std::string> axes, const std::string& unit, const std::string& meaning);
+
+/// Rows of a session's value, without gaps between them, from and to memory.
+void CopyIn(const ValueView& to, const float* from);
+void CopyOut(float* to, const ValueView& from);
+void CopyOut(std::int32_t* to, const ValueView& from);
 
 /// Calls `run` as often as the options say and notes each time in the report.
 void TimedRun(const RunOptions& options, RunReport* report, const std::function<void()>& run);

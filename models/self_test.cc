@@ -28,7 +28,7 @@ void UseSelfTest(Binder& binder, const fb::Network& network) {
 }
 
 Result<SelfTestReport> RunSelfTest(const WeightsFile& file, const std::string& name,
-                                   Network& network) {
+                                   Network& network, const RunOptions& options) {
   const fb::Network* record = file.FindNetwork(name);
   SelfTestReport report;
   if (record == nullptr || record->self_test() == nullptr) return report;
@@ -48,7 +48,7 @@ Result<SelfTestReport> RunSelfTest(const WeightsFile& file, const std::string& n
   if (want == nullptr || want->view.dtype != DType::kF32)
     return error("tensor " + test.output()->str() + " is missing or not float32");
 
-  Result<Arrays> outputs = network.Run(inputs, {}, nullptr);
+  Result<Arrays> outputs = network.Run(inputs, options, nullptr);
   if (!outputs.ok()) return outputs.status().In(file.path() + ": self-test");
   const auto got = outputs->find(test.output_name()->str());
   const auto n = static_cast<std::size_t>(want->view.shape.NumElements());

@@ -23,7 +23,7 @@ struct SelfTestReport {
 
 /// Runs the self-test of `network`, which was made from `file` under `name`.
 Result<SelfTestReport> RunSelfTest(const WeightsFile& file, const std::string& name,
-                                   Network& network);
+                                   Network& network, const RunOptions& options = {});
 
 }  // namespace gestus::models
 

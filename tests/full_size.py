@@ -44,7 +44,7 @@ def check(infer_cli, work, name, kind, config, available):
 def main():
     infer_cli, work = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
     work.mkdir(parents=True, exist_ok=True)
-    available = [isa for isa in isas(infer_cli) if isa != "scalar"]
+    available = isas(infer_cli)
     for mode in MODES:
         check(infer_cli, work, f"zs_mstm1_{mode}", "zs_mstm1", {"decoder_mode": mode}, available)
     check(infer_cli, work, "ast", "ast", {}, available)

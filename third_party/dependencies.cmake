@@ -18,6 +18,19 @@ find_program(GESTUS_FLATC flatc REQUIRED)
 # XXH3 for the checksum of weights files.
 find_path(GESTUS_XXHASH_INCLUDE xxhash.h REQUIRED)
 
+# libutf8proc 2.8: the Unicode of models/text.  Debian has it for the build machine only; a cross build
+# without it leaves that part out.
+find_path(GESTUS_UTF8PROC_INCLUDE utf8proc.h)
+find_library(GESTUS_UTF8PROC_LIBRARY utf8proc)
+if(NOT GESTUS_UTF8PROC_INCLUDE OR NOT GESTUS_UTF8PROC_LIBRARY)
+  if(NOT CMAKE_CROSSCOMPILING)
+    message(FATAL_ERROR "libutf8proc not found: install libutf8proc-dev")
+  endif()
+  message(STATUS "No libutf8proc for ${CMAKE_SYSTEM_PROCESSOR}: gestus_text (words to BERT tokens) "
+                 "and its tests are left out")
+  set(GESTUS_UTF8PROC_LIBRARY "")
+endif()
+
 find_package(Threads REQUIRED)
 
 # libzip reads and writes .npz, CLI11 parses the command line.

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "models/network.h"
-#include "models/zs_mstm1/zs_mstm1.h"
+#include "models/zs_mstm/zs_mstm.h"
 
 namespace gestus::models {
 namespace {
@@ -69,21 +69,21 @@ void Ast(benchmark::State& state, const char* file_name) {
 
 enum class Part { kStyle, kGenerator, kSegment };
 
-void ZsMstm1Part(benchmark::State& state, Part part, const char* file_name) {
+void ZsMstmPart(benchmark::State& state, Part part, const char* file_name) {
   const auto file = WeightsFile::Open(WeightsPath(file_name));
   if (!file.ok()) return state.SkipWithError(file.status().message().c_str());
-  const auto model = ZsMstm1::Make(*file, "");
+  const auto model = ZsMstm::Make(*file, "");
   if (!model.ok()) return state.SkipWithError(model.status().message().c_str());
-  const auto agent = ZsMstm1::NewAgent(*model, {.threads = static_cast<int>(state.range(0))});
+  const auto agent = ZsMstm::NewAgent(*model, {.threads = static_cast<int>(state.range(0))});
   if (!agent.ok()) return state.SkipWithError(agent.status().message().c_str());
-  const ZsMstm1Config& c = (*model)->config();
+  const ZsMstmConfig& c = (*model)->config();
   const auto speech = Noise(c.frames * 128), text = Noise(c.frames * c.d_text);
   const auto pose = Noise(c.frames * c.d_pose);
   std::vector<float> out(pose.size());
   for (auto _ : state) {
     (*agent)->ResetStyle();
     if (part != Part::kGenerator)
-      (*agent)->AddStyleSegment(speech.data(), text.data(), pose.data());
+      (*agent)->AddStyleSegment({speech.data(), text.data(), pose.data()});
     if (part != Part::kStyle) (*agent)->Generate(speech.data(), text.data(), out.data());
     benchmark::DoNotOptimize(out.data());
   }
@@ -113,13 +113,13 @@ BENCHMARK_CAPTURE(Ast, ast_1024_frames, "ast1024.fb")
     ->Args({2, 1024})
     ->Unit(benchmark::kMillisecond)
     ->UseManualTime();
-BENCHMARK_CAPTURE(ZsMstm1Part, style_encoder, Part::kStyle, "zs_mstm1.fb")
+BENCHMARK_CAPTURE(ZsMstmPart, style_encoder, Part::kStyle, "zs_mstm1.fb")
 GESTUS_THREADS->UseRealTime();
-BENCHMARK_CAPTURE(ZsMstm1Part, generator_autoregressive, Part::kGenerator, "zs_mstm1.fb")
+BENCHMARK_CAPTURE(ZsMstmPart, generator_autoregressive, Part::kGenerator, "zs_mstm1.fb")
 GESTUS_THREADS->UseRealTime();
-BENCHMARK_CAPTURE(ZsMstm1Part, generator_one_pass, Part::kGenerator, "zs_mstm1_parallel.fb")
+BENCHMARK_CAPTURE(ZsMstmPart, generator_one_pass, Part::kGenerator, "zs_mstm1_parallel.fb")
 GESTUS_THREADS->UseRealTime();
-BENCHMARK_CAPTURE(ZsMstm1Part, whole_segment, Part::kSegment, "zs_mstm1.fb")
+BENCHMARK_CAPTURE(ZsMstmPart, whole_segment, Part::kSegment, "zs_mstm1.fb")
 GESTUS_THREADS->UseRealTime();
 BENCHMARK(Load)->Unit(benchmark::kMillisecond)->UseRealTime();
 

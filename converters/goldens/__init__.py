@@ -72,9 +72,9 @@ Tiny networks with random weights, their inputs, and what PyTorch's reference (c
 in double precision) makes of them, layer by layer.  The C++ tests read them; they need no PyTorch.
 
 `<case>.fb` is the weights file.  `<case>.npz` holds the inputs and the outputs under the names that
-infer-cli gives them, and intermediates as `tap/<name>`: float32, whole numbers int32.  Where several
-windows share an intermediate it is the last one's, or left out.  `option/<name>` is an option of the
-run that made the outputs.
+infer-cli gives them, and intermediates as `tap/<name>`: float32, whole numbers int32.  Where
+several windows share an intermediate it is the last one's, or left out.  `option/<name>` is an
+option of the run that made the outputs.
 
 Made by `/usr/bin/python3 -m converters.goldens`, seed {seed}, Python {python}, NumPy {numpy},
 PyTorch {torch}.  Running it again gives the same bytes.

@@ -63,7 +63,8 @@ def generator_shapes(c, prefix, embedding, columns):
     for n in range(c["decoder_layers"]):
         layer = f"{prefix}decoder.layers.{n}."
         shapes |= {
-            **layers.attention(layer + "self_attn", d), **layers.attention(layer + "multihead_attn", d),
+            **layers.attention(layer + "self_attn", d),
+            **layers.attention(layer + "multihead_attn", d),
             **layers.linear(layer + "linear1", ff, d), **layers.linear(layer + "linear2", d, ff),
             **layers.norm(layer + "norm1", d), **layers.norm(layer + "norm2", d),
             **layers.norm(layer + "norm3", d),

@@ -65,7 +65,8 @@ class ZsMstm2(Kind):
         inputs["style_face"] = streams.rows("face", core["frames"] * style_segments)
         # A segment holds one dialog act, or a few.
         tags = streams.rng.random((style_segments, config["d_tags"]))
-        inputs["style_tags"] = ((tags < 0.1) | (tags == tags.min(1, keepdims=True))).astype("float32")
+        held = (tags < 0.1) | (tags == tags.min(1, keepdims=True))
+        inputs["style_tags"] = held.astype("float32")
         return inputs
 
     def demo(self):

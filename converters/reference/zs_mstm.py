@@ -1,4 +1,4 @@
-"""What both versions of ZS-MSTM share (thesis chapters 6 and 7), with every reading that the weights
+"""What both versions of ZS-MSTM share (thesis chapters 6 and 7), with every reading that a weights
 file can state."""
 
 import torch
@@ -15,7 +15,8 @@ class Encoders(nn.Module):
     def __init__(self, network, c):
         super().__init__()
         self.c = c
-        self.speech, self.text = (normalisation_of(network, stream) for stream in ("speech", "text"))
+        self.speech, self.text = (normalisation_of(network, stream)
+                                  for stream in ("speech", "text"))
         self.ast_content = Ast(c["ast_content"])
         if not c["ast_shared"]:
             self.ast_style = Ast(c["ast_style"])

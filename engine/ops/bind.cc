@@ -22,9 +22,14 @@ std::size_t WorkerScratch(const Node& node, const std::vector<ValueInfo>& values
 }
 
 std::size_t SharedScratch(const Node& node, const std::vector<ValueInfo>& values) {
-  // The cell state, and the hidden state before the first step.
-  return node.op == Op::kLstm ? 2 * static_cast<std::size_t>(ShapeOf(node.output, values).Cols())
-                              : 0;
+  switch (node.op) {
+    case Op::kLstm:  // the cell state, and the hidden state before the first step
+      return 2 * static_cast<std::size_t>(ShapeOf(node.output, values).Cols());
+    case Op::kPick:  // the logits, to be ordered
+      return static_cast<std::size_t>(ShapeOf(node.inputs[0], values).Cols());
+    default:
+      return 0;
+  }
 }
 
 OpCost CostOf(const Node& node, const std::vector<ValueInfo>& values) {
@@ -79,10 +84,13 @@ std::unique_ptr<BoundOp> Bind(const Binding& b) {
     case Op::kGather:
     case Op::kPatches:
     case Op::kPadRows:
-    case Op::kStoreRow:
+    case Op::kStoreRows:
+    case Op::kLastRows:
     case Op::kStepRow:
     case Op::kPreviousRow:
       return BindMove(b);
+    case Op::kPick:
+      return BindPick(b);
   }
   return nullptr;
 }

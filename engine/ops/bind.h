@@ -13,6 +13,7 @@ std::unique_ptr<BoundOp> BindAttention(const Binding& b);
 std::unique_ptr<BoundOp> BindLstm(const Binding& b);
 std::unique_ptr<BoundOp> BindRowwise(const Binding& b);  ///< each output row from input rows alone
 std::unique_ptr<BoundOp> BindMove(const Binding& b);     ///< rows put in other places
+std::unique_ptr<BoundOp> BindPick(const Binding& b);
 
 /// Floats of scratch that one worker needs for an attention node.
 std::size_t AttentionScratch(const Node& node, const std::vector<ValueInfo>& values,

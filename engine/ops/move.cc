@@ -1,4 +1,5 @@
 // Ops that put rows in other places.  They move little, so worker 0 does them alone.
+#include <algorithm>
 #include <cstring>
 
 #include "engine/ops/bind.h"
@@ -30,8 +31,17 @@ class MoveOp final : public BoundOp {
         return Patches();
       case Op::kPadRows:
         return PadRows();
-      case Op::kStoreRow:
-        return Copy(out_.at(0, step), 0, x.f32, 0, 1, out_.cols);
+      case Op::kStoreRows: {
+        const std::size_t rows = std::min(x.rows, step + 1), first = x.rows - rows;
+        return Copy(out_.at(0, step + 1 - rows), out_.row_stride, x.at(0, first), x.row_stride,
+                    rows, out_.cols);
+      }
+      case Op::kLastRows: {
+        const std::size_t rows = std::min(out_.rows, step + 1), first = out_.rows - rows;
+        Zero(0, 0, first);
+        return Copy(out_.at(0, first), out_.row_stride, x.at(0, step + 1 - rows), x.row_stride,
+                    rows, out_.cols);
+      }
       case Op::kStepRow:
         return Copy(out_.f32, 0, x.at(0, step), 0, 1, out_.cols);
       default:
@@ -106,8 +116,9 @@ class MoveOp final : public BoundOp {
   }
 
   void PreviousRow(std::size_t step) const {
-    if (step == 0) return Zero(0, 0, 1);
-    Copy(out_.f32, 0, in_[0].at(0, step - 1), 0, 1, out_.cols);
+    if (step > 0) return Copy(out_.f32, 0, in_[0].at(0, step - 1), 0, 1, out_.cols);
+    if (in_.size() > 1) return Copy(out_.f32, 0, in_[1].f32, 0, 1, out_.cols);
+    Zero(0, 0, 1);
   }
 
   const kernels::KernelTable& kernels_;

@@ -67,7 +67,7 @@ Value DecoderLayerStep(Graph& g, const DecoderLayerWeights& w, int heads, Value 
                        Value cache) {
   const std::int64_t e = Width(w.self_attn);
   const Value qkv = g.Linear(x, w.self_attn.in_proj);  // (1, 3E)
-  g.StoreRow(cache, g.Columns(qkv, e, 2 * e));
+  g.StoreRows(cache, g.Columns(qkv, e, 2 * e));
   const Value att = g.Attention(g.Columns(qkv, 0, e), g.Columns(cache, 0, e),
                                 g.Columns(cache, e, e), {.heads = heads, .by_step = true});
   return AfterSelfAttention(g, w, heads, x, att, memory_kv);

@@ -21,6 +21,15 @@ void BindNorm(Binder& binder, const std::string& name, std::int64_t d, float eps
 void BindLstmStack(Binder& binder, const std::string& name, std::int64_t layers, std::int64_t in,
                    std::int64_t hidden, std::vector<LstmWeights>* w);
 
+/// One layer of torch.nn.LSTM(bidirectional=True): the names above, and the same with "_reverse".
+struct BiLstmWeights {
+  LstmWeights forward, backward;
+};
+void BindLstm(Binder& binder, const std::string& name, std::int64_t in, std::int64_t hidden,
+              LstmWeights* w);
+void BindBiLstm(Binder& binder, const std::string& name, std::int64_t in, std::int64_t hidden,
+                BiLstmWeights* w);
+
 /// Outputs [begin, begin + count) of a linear layer.
 LinearWeights RowsOf(const LinearWeights& w, std::int64_t begin, std::int64_t count);
 

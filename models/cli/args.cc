@@ -12,6 +12,7 @@ Examples:
   infer-cli weights.fb speech.npz --style anna.style -o motion.npz
   infer-cli style weights.fb clip.npz -o anna.style     a speaker's style, once and for all
   infer-cli info weights.fb                             what a file holds, takes and gives
+  infer-cli check weights.fb                            does it compute here what it should?
 
 Exit codes: 0 done; 2 an error, told in one line on the standard error output. Outputs are complete
 or not written at all. GESTUS_ISA=<name> in the environment lowers the instruction set as --isa does.)";
@@ -85,6 +86,11 @@ Result<Arguments> ParseArguments(int argc, const char* const* argv) {
   AddCompute(style, &a);
   AddShared(style, &a);
 
+  CLI::App* check = app.add_subcommand("check", "Run the self-tests that a weights file carries");
+  check->add_option("WEIGHTS", a.weights, "Weights file")->type_name("FILE.fb")->required();
+  AddCompute(check, &a);
+  AddShared(check, &a);
+
   try {
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp&) {
@@ -98,6 +104,7 @@ Result<Arguments> ParseArguments(int argc, const char* const* argv) {
   if (version) a.command = Command::kVersion;
   if (info->parsed()) a.command = Command::kInfo;
   if (style->parsed()) a.command = Command::kStyle;
+  if (check->parsed()) a.command = Command::kCheck;
   if (a.command != Command::kInfer) return a;
   if (a.weights.empty()) return Missing("WEIGHTS");
   if (a.input.empty()) return Missing("INPUT.npz");

@@ -8,7 +8,7 @@
 
 namespace gestus::cli {
 
-enum class Command { kInfer, kInfo, kStyle, kVersion, kHelp };
+enum class Command { kInfer, kInfo, kStyle, kCheck, kVersion, kHelp };
 
 struct Arguments {
   Command command = Command::kInfer;

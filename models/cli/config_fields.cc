@@ -1,78 +1,110 @@
-// Configurations as text.  Every field of the schema has its line here, defaults included, so that
-// what a file leaves unsaid is shown too.
+// Configurations as text, through the schema's own description of them: a new field or a new kind
+// of network shows up without a line here.  Defaults are shown too.
+#include <flatbuffers/reflection.h>
+
+#include <algorithm>
+
 #include "models/cli/info.h"
 #include "models/cli/text.h"
+#include "weights_bfbs_generated.h"
 #include "weights_generated.h"
 
 namespace gestus::cli {
 namespace {
 
-class FieldList {
- public:
-  explicit FieldList(std::string prefix, Fields* fields)
-      : prefix_(std::move(prefix)), fields_(fields) {}
-
-  void Add(const char* name, const std::string& value) {
-    fields_->emplace_back(prefix_ + name, value);
-  }
-  void Add(const char* name, const char* value) { Add(name, std::string(value)); }
-  void Add(const char* name, std::uint32_t value) { Add(name, std::to_string(value)); }
-  void Add(const char* name, float value) { Add(name, Significant(static_cast<double>(value), 3)); }
-  void Add(const char* name, bool value) { Add(name, value ? "true" : "false"); }
-
- private:
-  std::string prefix_;
-  Fields* fields_;
-};
-
-void AddAst(const std::string& prefix, const fb::AstConfig& c, Fields* fields) {
-  FieldList list(prefix, fields);
-  list.Add("frames", c.frames());
-  list.Add("mel_bins", c.mel_bins());
-  list.Add("patch", c.patch());
-  list.Add("stride", c.stride());
-  list.Add("d_model", c.d_model());
-  list.Add("layers", c.layers());
-  list.Add("heads", c.heads());
-  list.Add("d_mlp", c.d_mlp());
-  list.Add("pool", fb::EnumNameAstPool(c.pool()));
-  list.Add("head", fb::EnumNameAstHead(c.head()));
-  list.Add("d_out", c.d_out());
-  list.Add("ln_eps", c.ln_eps());
-  list.Add("head_ln_eps", c.head_ln_eps());
+const reflection::Schema& Schema() {
+  return *reflection::GetSchema(fb::WeightsFileBinarySchema::data());
 }
 
-void AddZsMstm1(const fb::ZsMstm1Config& c, Fields* fields) {
-  FieldList list("", fields);
-  list.Add("frames", c.frames());
-  list.Add("frame_rate", c.frame_rate());
-  list.Add("d_text", c.d_text());
-  list.Add("d_pose", c.d_pose());
-  list.Add("d_model", c.d_model());
-  list.Add("attention_heads", c.attention_heads());
-  list.Add("lstm_layers", c.lstm_layers());
-  list.Add("lstm_hidden", c.lstm_hidden());
-  list.Add("decoder_layers", c.decoder_layers());
-  list.Add("decoder_heads", c.decoder_heads());
-  list.Add("decoder_ff", c.decoder_ff());
-  list.Add("decoder_ln_eps", c.decoder_ln_eps());
-  list.Add("granularity", fb::EnumNameGranularity(c.granularity()));
-  list.Add("context_segments", c.context_segments());
-  list.Add("style_pool", fb::EnumNameStylePool(c.style_pool()));
-  list.Add("decoder_mode", fb::EnumNameDecoderMode(c.decoder_mode()));
-  list.Add("positions", fb::EnumNamePositionalEncoding(c.positions()));
-  list.Add("pose_source", fb::EnumNamePoseSource(c.pose_source()));
-  list.Add("ast_shared", c.ast_shared());
-  AddAst("ast_content.", *c.ast_content(), fields);
-  if (c.ast_style() != nullptr && !c.ast_shared()) AddAst("ast_style.", *c.ast_style(), fields);
+/// The fields of a table in the order of their declaration.
+std::vector<const reflection::Field*> Declared(const reflection::Object& object) {
+  std::vector<const reflection::Field*> fields(object.fields()->begin(), object.fields()->end());
+  std::sort(fields.begin(), fields.end(),
+            [](const auto* a, const auto* b) { return a->id() < b->id(); });
+  return fields;
+}
+
+std::string NameOf(const reflection::Enum& type, std::int64_t value) {
+  for (const reflection::EnumVal* v : *type.values()) {
+    if (v->value() == value) return v->name()->str();
+  }
+  return std::to_string(value);
+}
+
+std::string ScalarText(const flatbuffers::Table& table, const reflection::Field& field) {
+  const int type = field.type()->index();
+  switch (field.type()->base_type()) {
+    case reflection::Bool:
+      return flatbuffers::GetFieldI<std::uint8_t>(table, field) != 0 ? "true" : "false";
+    case reflection::UByte: {
+      const std::int64_t value = flatbuffers::GetFieldI<std::uint8_t>(table, field);
+      return type < 0 ? std::to_string(value)
+                      : NameOf(*Schema().enums()->Get(static_cast<std::uint32_t>(type)), value);
+    }
+    case reflection::Int:
+      return std::to_string(flatbuffers::GetFieldI<std::int32_t>(table, field));
+    case reflection::UInt:
+      return std::to_string(flatbuffers::GetFieldI<std::uint32_t>(table, field));
+    default:  // floats are the only other scalars that configurations have
+      return Significant(double{flatbuffers::GetFieldF<float>(table, field)}, 3);
+  }
+}
+
+void AddTable(const std::string& prefix, const flatbuffers::Table& table,
+              const reflection::Object& object, Fields* fields);
+
+void AddVector(const std::string& name, const flatbuffers::Table& table,
+               const reflection::Field& field, Fields* fields) {
+  using Tables = flatbuffers::Vector<flatbuffers::Offset<flatbuffers::Table>>;
+  using Strings = flatbuffers::Vector<flatbuffers::Offset<flatbuffers::String>>;
+  if (field.type()->element() == reflection::Obj) {
+    const auto* list = table.GetPointer<const Tables*>(field.offset());
+    const auto& object =
+        *Schema().objects()->Get(static_cast<std::uint32_t>(field.type()->index()));
+    for (flatbuffers::uoffset_t i = 0; list != nullptr && i < list->size(); ++i)
+      AddTable(name + "." + std::to_string(i) + ".", *list->Get(i), object, fields);
+    return;
+  }
+  const auto* list = table.GetPointer<const Strings*>(field.offset());
+  std::string text;
+  for (flatbuffers::uoffset_t i = 0; list != nullptr && i < list->size(); ++i)
+    text += (i == 0 ? "" : ", ") + list->Get(i)->str();
+  if (list != nullptr) fields->emplace_back(name, text);
+}
+
+void AddTable(const std::string& prefix, const flatbuffers::Table& table,
+              const reflection::Object& object, Fields* fields) {
+  for (const reflection::Field* field : Declared(object)) {
+    const std::string name = prefix + field->name()->str();
+    switch (field->type()->base_type()) {
+      case reflection::Obj: {
+        const auto* inner = table.GetPointer<const flatbuffers::Table*>(field->offset());
+        const auto index = static_cast<std::uint32_t>(field->type()->index());
+        if (inner != nullptr) AddTable(name + ".", *inner, *Schema().objects()->Get(index), fields);
+        break;
+      }
+      case reflection::String: {
+        const auto* text = table.GetPointer<const flatbuffers::String*>(field->offset());
+        if (text != nullptr) fields->emplace_back(name, text->str());
+        break;
+      }
+      case reflection::Vector:
+        AddVector(name, table, *field, fields);
+        break;
+      default:
+        fields->emplace_back(name, ScalarText(table, *field));
+    }
+  }
 }
 
 }  // namespace
 
 Fields ConfigFields(const fb::Network& network) {
   Fields fields;
-  if (const auto* config = network.config_as_ZsMstm1Config()) AddZsMstm1(*config, &fields);
-  if (const auto* config = network.config_as_AstConfig()) AddAst("", *config, &fields);
+  const std::string type = std::string("gestus.fb.") + fb::EnumNameConfig(network.config_type());
+  const reflection::Object* object = Schema().objects()->LookupByKey(type.c_str());
+  if (object != nullptr && network.config() != nullptr)
+    AddTable("", *static_cast<const flatbuffers::Table*>(network.config()), *object, &fields);
   return fields;
 }
 

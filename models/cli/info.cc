@@ -1,6 +1,8 @@
 // Builds the text and the JSON of `infer-cli info` from the checked file, never from raw bytes.
 #include "models/cli/info.h"
 
+#include <set>
+
 #include "models/cli/json.h"
 #include "models/cli/setup.h"
 #include "models/cli/text.h"
@@ -35,10 +37,19 @@ Result<std::vector<NamedNetwork>> MakeNetworks(const std::shared_ptr<const Weigh
                                      " that infer-cli info lists");
 }
 
+// Weights alone: no self-test vectors, no vocabulary.
 std::uint64_t Parameters(const WeightsFile& weights) {
+  std::set<std::string> others;
+  for (const fb::Network* network : *weights.root().networks()) {
+    const fb::SelfTest* test = network->self_test();
+    if (test == nullptr) continue;
+    for (const flatbuffers::String* name : *test->inputs()) others.insert(name->str());
+    others.insert(test->output()->str());
+  }
   std::uint64_t count = 0;
   for (const WeightsFile::Entry& entry : weights.tensors()) {
-    count += static_cast<std::uint64_t>(entry.view.shape.NumElements());
+    if (entry.view.dtype == DType::kF32 && others.count(entry.name) == 0)
+      count += static_cast<std::uint64_t>(entry.view.shape.NumElements());
   }
   return count;
 }

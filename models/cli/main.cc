@@ -11,6 +11,7 @@
 #include <new>
 
 #include "models/cli/args.h"
+#include "models/cli/check.h"
 #include "models/cli/infer.h"
 #include "models/cli/info.h"
 #include "models/cli/machine.h"
@@ -46,6 +47,8 @@ Status Run(int argc, const char* const* argv) {
       return RunInfo(*arguments);
     case Command::kStyle:
       return RunStyle(*arguments);
+    case Command::kCheck:
+      return RunCheck(*arguments);
     case Command::kVersion:
       return Print(arguments->json ? VersionJson() : VersionText());
     case Command::kHelp:

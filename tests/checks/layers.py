@@ -12,9 +12,10 @@ ALLOWED = {
     "kernels": {"kernels"},
     "engine": {"engine", "kernels"},
     "models": {"models", "engine", "kernels"},
-    "models/cli": {"models/cli", "models", "engine", "kernels"},
-    "bench": {"bench", "models", "engine", "kernels"},
-    "tests": {"tests", "models/cli", "models", "engine", "kernels"},
+    "models/text": {"models/text", "engine"},
+    "models/cli": {"models/cli", "models/text", "models", "engine", "kernels"},
+    "bench": {"bench", "models/text", "models", "engine", "kernels"},
+    "tests": {"tests", "models/cli", "models/text", "models", "engine", "kernels"},
 }
 # Of the kernels' inside only the kernels themselves know, and the tests' oracle.
 INSIDE = re.compile(r"kernels/(isa/|.*\.inl\.h)")
@@ -22,7 +23,7 @@ INSIDE = re.compile(r"kernels/(isa/|.*\.inl\.h)")
 # The probe of the machine's peak is a kernel itself, one that only the benches link.
 PROBE = "bench/peak_probe.cc"
 LIBRARIES = {"xsimd": {"kernels"}, "Eigen": {"bench"}, "zip.h": {"models/cli", "tests"},
-             "CLI": {"models/cli"}}
+             "CLI": {"models/cli"}, "utf8proc.h": {"models/text"}}
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', re.M)
 
 
@@ -53,7 +54,8 @@ def self_test():
     cases = {
         "kernels/a.cc": ('#include "engine/tensor.h"', 1),
         "engine/b.cc": ('#include "models/x.h"\n#include <xsimd/xsimd.hpp>', 2),
-        "models/c.h": ('#include "models/cli/npz.h"', 1),
+        "models/c.h": ('#include "models/cli/npz.h"\n#include <utf8proc.h>', 2),
+        "models/text/h.cc": ('#include "models/network.h"\n#include <utf8proc.h>', 1),
         "models/cli/d.cc": ('#include "tests/e.h"\n#include "models/f.h"', 1),
         "tests/g.cc": ('#include "kernels/gemm.inl.h"\n#include "kernels/kernels.h"', 1),
     }

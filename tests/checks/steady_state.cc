@@ -1,7 +1,7 @@
 // Runs a model in its steady state with every allocation, lock, mapping, write and throw of the
 // process intercepted: there must be none.
 //
-//   steady_state WEIGHTS THREADS REPEATS [--plant]
+//   steady_state WEIGHTS|every-op THREADS REPEATS [--plant]
 //
 // The runs lie between two getppid() calls, so that a tracer can tell the system calls among them.
 // --plant allocates once in the middle, to show that the check can fail.
@@ -15,16 +15,19 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <functional>
 #include <new>
 #include <vector>
 
-#include "models/zs_mstm1/zs_mstm1.h"
+#include "models/zs_mstm/zs_mstm.h"
+#include "tests/engine/every_op.h"
 
 namespace {
 
 std::atomic<bool> armed{false};
 std::atomic<long> caught{0};
 std::atomic<const char*> first_caught{nullptr};
+std::vector<float> planted;
 
 void Note(const char* what) {
   if (!armed.load(std::memory_order_relaxed)) return;
@@ -108,35 +111,64 @@ ssize_t write(int fd, const void* data, std::size_t n) {
 }  // extern "C"
 #pragma GCC visibility pop
 
-int main(int argc, char** argv) {
-  using namespace gestus;
-  using namespace gestus::models;
-  if (argc < 4) return 2;
-  const int threads = std::atoi(argv[2]), repeats = std::atoi(argv[3]);
-  const bool plant = argc > 4 && std::strcmp(argv[4], "--plant") == 0;
-  const auto file = WeightsFile::Open(argv[1]);
-  if (!file.ok()) return std::fprintf(stderr, "%s\n", file.status().message().c_str()), 2;
-  const auto model = ZsMstm1::Make(*file, "");
-  if (!model.ok()) return std::fprintf(stderr, "%s\n", model.status().message().c_str()), 2;
-  const auto agent = ZsMstm1::NewAgent(*model, {.threads = threads});
-  if (!agent.ok()) return std::fprintf(stderr, "%s\n", agent.status().message().c_str()), 2;
-  const ZsMstm1Config& c = (*model)->config();
+namespace {
+
+using namespace gestus;  // NOLINT: this is a test of that library
+using models::ZsMstm;
+
+/// What is run again and again; empty after an error has been told.
+using Subject = std::function<void()>;
+
+Subject Fail(const Status& status) {
+  std::fprintf(stderr, "%s\n", status.message().c_str());
+  return {};
+}
+
+Subject ZsMstmOf(const char* path, int threads) {
+  const auto file = WeightsFile::Open(path);
+  if (!file.ok()) return Fail(file.status());
+  const auto model = ZsMstm::Make(*file, "");
+  if (!model.ok()) return Fail(model.status());
+  auto made = ZsMstm::NewAgent(*model, {.threads = threads});
+  if (!made.ok()) return Fail(made.status());
+  const models::ZsMstmConfig& c = (*model)->config();
   const auto values = [&](std::int64_t cols) {
     return std::vector<float>(static_cast<std::size_t>(c.WindowFrames() * cols), 0.5f);
   };
-  const auto speech = values(c.ast_content.mel_bins), text = values(c.d_text);
-  auto pose = values(c.d_pose);
-  const auto run = [&] {
-    (*agent)->AddStyleSegment(speech.data(), text.data(), pose.data());
-    (*agent)->Generate(speech.data(), text.data(), pose.data());
+  const std::shared_ptr<models::ZsMstmAgent> agent(std::move(*made));
+  return [agent, speech = values(c.ast_content.mel_bins), text = values(c.d_text),
+          pose = values(c.d_pose)]() mutable {
+    agent->AddStyleSegment({speech.data(), text.data(), pose.data()});
+    agent->Generate(speech.data(), text.data(), pose.data());
   };
+}
+
+Subject EveryOpOf(int threads) {
+  auto model = std::make_shared<test::Model>(test::MakeEveryOp(kernels::BestTable()));
+  if (model->plan == nullptr) return {};
+  auto made = Session::Create(model->plan, {.threads = threads});
+  if (!made.ok()) return Fail(made.status());
+  const std::shared_ptr<Session> session(std::move(*made));
+  test::FillEveryOp(*session, 1);
+  return [model, session] { session->Run(); };
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc < 4) return 2;
+  const int threads = std::atoi(argv[2]), repeats = std::atoi(argv[3]);
+  const bool plant = argc > 4 && std::strcmp(argv[4], "--plant") == 0;
+  const Subject run =
+      std::strcmp(argv[1], "every-op") == 0 ? EveryOpOf(threads) : ZsMstmOf(argv[1], threads);
+  if (!run) return 2;
 
   for (int i = 0; i < 10; ++i) run();
   syscall(SYS_getppid);
   armed = true;
   for (int i = 0; i < repeats; ++i) {
     run();
-    if (plant && i == repeats / 2) std::vector<float>(pose).swap(pose);
+    if (plant && i == repeats / 2) std::vector<float>(1).swap(planted);
   }
   armed = false;
   syscall(SYS_getppid);

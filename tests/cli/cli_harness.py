@@ -10,6 +10,7 @@ import numpy as np
 
 INFER_CLI = os.path.abspath(sys.argv.pop(1))
 GOLDENS = os.path.abspath(sys.argv.pop(1))
+ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 CASE = "frame_autoregressive"
 INPUTS = ("speech", "text", "style_speech", "style_text", "style_pose")
 OUTPUTS = ("pose", "style")

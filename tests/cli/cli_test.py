@@ -7,11 +7,15 @@ import json
 import os
 import pty
 import subprocess
+import sys
 import unittest
 
 import numpy as np
 
-from cli_harness import INFER_CLI, CliTest, golden
+from cli_harness import INFER_CLI, ROOT, CliTest, golden
+
+sys.path.insert(0, ROOT)
+from converters import weights_file  # noqa: E402
 
 
 class RunTest(CliTest):
@@ -193,7 +197,8 @@ class InfoTest(CliTest):
         info = json.loads(self.good("info", self.WEIGHTS, "--json", "--plan"))
         self.assertEqual(info["bytes"], os.path.getsize(self.WEIGHTS))
         self.assertEqual(info["parameters"],
-                         sum(int(np.prod(t["shape"])) for t in info["tensors"]))
+                         sum(int(np.prod(t["shape"])) for t in info["tensors"]
+                             if not t["name"].startswith("self_test/")))
         network = info["networks"][0]
         self.assertEqual([a["name"] for a in network["inputs"]][:2], ["speech", "text"])
         self.assertTrue(network["plan"])
@@ -203,8 +208,21 @@ class InfoTest(CliTest):
             if name.endswith(".fb"):
                 info = json.loads(self.good("info", golden(name), "--json"))
                 network = info["networks"][0]
-                self.assertIn("ln_eps" if network["kind"] == "AST" else "decoder_mode",
-                              network["configuration"], name)
+                self.assertGreater(len(network["configuration"]), 3, name)
+                self.assertTrue(network["inputs"] and network["outputs"], name)
+
+    def test_check(self):
+        self.assertIn("passed", self.good("check", self.WEIGHTS))
+        report = json.loads(self.good("check", self.WEIGHTS, "--json", "--threads", "2"))
+        self.assertEqual(report["networks"][0]["self_test"], "passed")
+        self.assertLess(report["networks"][0]["relative_error"], 1e-4)
+
+    def test_check_finds_a_wrong_result(self):
+        file = weights_file.read(self.WEIGHTS)
+        tensors = {name: array.copy() for name, array in file.tensors.items()}
+        tensors[file.networks[0]["self_test"]["output"]] *= 1.01
+        weights_file.write(self.path("wrong.fb"), file.networks, tensors, file.provenance)
+        self.bad("check", "wrong.fb", says=("wrong.fb", "self-test", "relative error"))
 
     def test_help_and_version(self):
         self.assertIn("Exit codes", self.good("--help"))

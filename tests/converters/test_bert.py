@@ -14,9 +14,9 @@ pytest.importorskip("torch")
 from converters.reference.run import build, run  # noqa: E402  pylint: disable=wrong-import-position
 
 
-def make(config, **tensors):
+def make(config):
     network = networks.complete("bert", {"config": config})
-    return build(network, random_weights(network, 1) | tensors)
+    return build(network, random_weights(network, 1))
 
 
 def test_padding_changes_nothing_and_is_zero():
@@ -39,12 +39,11 @@ def test_chunks_know_nothing_of_each_other():
 
 def test_special_pieces_come_from_the_vocabulary():
     """[CLS] is the last line of VOCABULARY and [SEP] the third."""
-    config = {**SMALL, "tokens": 20}
-    module = make(config, vocabulary=VOCABULARY)
+    network = networks.complete("bert", {"config": {**SMALL, "tokens": 20}})
+    module = build(network, random_weights(network, 1) | {"vocabulary": VOCABULARY})
     ids = np.array([[4]], np.int32)
     taps = run(module, {"ids": ids}, taps=True)
-    weights = {key: x.astype(float)
-               for key, x in random_weights(networks.complete("bert", {"config": config}), 1).items()}
+    weights = {key: x.astype(float) for key, x in random_weights(network, 1).items()}
     x = (weights["embeddings.word_embeddings.weight"][[19, 4, 2]]
          + weights["embeddings.position_embeddings.weight"][:3]
          + weights["embeddings.token_type_embeddings.weight"][0])

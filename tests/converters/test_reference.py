@@ -153,3 +153,7 @@ def test_compare_finds_a_difference():
                                                                          ("pose", 0.05)]
     assert verify.relative_error(np.ones(3), np.ones(4)) == float("inf")
     assert np.isnan(verify.relative_error(np.array([np.nan]), np.ones(1)))
+    whole = np.array([1000, 2], np.int32)
+    assert verify.relative_error(whole.copy(), whole) == 0
+    assert verify.relative_error(whole + [0, 1], whole) == float("inf")
+    assert verify.relative_error(whole.astype(np.float32), whole) == float("inf")

@@ -26,6 +26,9 @@ class Weights {
   NormWeights Norm(std::int64_t d) {
     return {tensors_.Make({d}, ++seed_), tensors_.Make({d}, ++seed_)};
   }
+  TensorView Of(Shape shape, std::vector<float> values) {
+    return tensors_.Of(shape, std::move(values));
+  }
   TensorView Table(Shape shape) { return tensors_.Make(shape, ++seed_); }
 
  private:
@@ -63,18 +66,27 @@ Value Steps(Graph& g, Weights& w, Value memory) {
   const Graph::Scope scope(g, "steps");
   const Value kv = g.Linear(memory, w.Linear(2 * kPose, kWidth));  // (12, 16)
   const Value poses = g.Buffer({kSteps, kPose}), cache = g.Buffer({kSteps, 2 * kPose});
+  static const std::int32_t kFirst[] = {1};
+  const Value tokens = g.Buffer({kSteps, 1}, DType::kI32);
+  const Value first = g.Constant({DType::kI32, {1, 1}, kFirst});
+  const TensorView table = w.Table({kPose, kPose});
+  const Value controls = g.Constant(w.Of({1, 2}, {0.8f, 4.0f}));  // temperature, top-k
+  const Value uniforms = g.Constant(w.Table({kSteps, 1}));
   const Value time = g.Positions(kSteps, kPose);
   g.BeginLoop(kSteps);
   Value x = g.Add(g.Linear(g.PreviousRow(poses), w.Linear(kPose, kPose)), g.StepRow(time));
+  x = g.Add(x, g.Embedding(g.PreviousRow(tokens, first), table));
   const Value qkv = g.Linear(x, w.Linear(3 * kPose, kPose));
-  g.StoreRow(cache, g.Columns(qkv, kPose, 2 * kPose));
+  g.StoreRows(cache, g.Columns(qkv, kPose, 2 * kPose));
   const Value self = g.Attention(g.Columns(qkv, 0, kPose), g.Columns(cache, 0, kPose),
                                  g.Columns(cache, kPose, kPose), {.heads = 2, .by_step = true});
   x = g.LayerNorm(g.Add(x, self), w.Norm(kPose));
   const Value cross = g.Attention(x, g.Columns(kv, 0, kPose), g.Columns(kv, kPose, kPose),
                                   {.heads = 4, .scale = 0.7f});
-  g.StoreRow(poses,
-             g.Linear(g.Add(x, cross), w.Linear(kPose, kPose), Activation::kLeakyRelu, 0.1f));
+  g.StoreRows(poses,
+              g.Linear(g.Add(x, cross), w.Linear(kPose, kPose), Activation::kLeakyRelu, 0.1f));
+  const Value logits = g.Conv1d(g.LastRows(poses, 3), w.Conv(kPose, kPose, 3), 1, 0, 0);
+  g.StoreRows(tokens, g.Pick(logits, controls, g.StepRow(uniforms)));
   g.EndLoop();
   return poses;
 }

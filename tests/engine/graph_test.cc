@@ -420,7 +420,7 @@ TEST_P(GraphTest, LoopIsARecurrence) {
       [&](Graph& g, Value v) {
         const Value y = g.Buffer({9, 4});
         g.BeginLoop(9);
-        g.StoreRow(y, g.Linear(g.Concat({g.PreviousRow(y), g.StepRow(v)}), w, Activation::kTanh));
+        g.StoreRows(y, g.Linear(g.Concat({g.PreviousRow(y), g.StepRow(v)}), w, Activation::kTanh));
         g.EndLoop();
         return g.Add(y, g.Zeros({1, 4}));
       },
@@ -436,9 +436,9 @@ TEST_P(GraphTest, AttentionByStepIsCausalAttention) {
         const Value cache = g.Buffer({10, 16}), out = g.Buffer({10, 8});
         g.BeginLoop(10);
         const Value row = g.Linear(g.StepRow(x), w);
-        g.StoreRow(cache, g.Columns(row, 8, 16));
-        g.StoreRow(out, g.Attention(g.Columns(row, 0, 8), g.Columns(cache, 0, 8),
-                                    g.Columns(cache, 8, 8), {.heads = 2, .by_step = true}));
+        g.StoreRows(cache, g.Columns(row, 8, 16));
+        g.StoreRows(out, g.Attention(g.Columns(row, 0, 8), g.Columns(cache, 0, 8),
+                                     g.Columns(cache, 8, 8), {.heads = 2, .by_step = true}));
         g.EndLoop();
         return out;
       },
@@ -461,7 +461,7 @@ TEST_P(GraphTest, TwoLoopsOneAfterTheOther) {
         for (int pass = 0; pass < 2; ++pass) {
           const Value sums = g.Buffer({5, 3});
           g.BeginLoop(5);
-          g.StoreRow(sums, g.Add(g.PreviousRow(sums), g.StepRow(v)));
+          g.StoreRows(sums, g.Add(g.PreviousRow(sums), g.StepRow(v)));
           g.EndLoop();
           v = sums;
         }
@@ -479,14 +479,160 @@ TEST_P(GraphTest, AProductOfABufferSeesItAsItWas) {
       [&](Graph& g, Value v) {
         const Value buffer = g.Buffer({1, 4}), sum = g.Buffer({1, 4});
         g.BeginLoop(1);
-        g.StoreRow(buffer, v);
+        g.StoreRows(buffer, v);
         const Value product = g.Linear(buffer, w);
-        g.StoreRow(buffer, g.Zeros({1, 4}));
-        g.StoreRow(sum, g.Add(v, product));
+        g.StoreRows(buffer, g.Zeros({1, 4}));
+        g.StoreRows(sum, g.Add(v, product));
         g.EndLoop();
         return g.Add(sum, g.Rows(buffer, 0, 1));
       },
       AddOf(x, LinearOf(x, ToDense(w.weight), {})));
+}
+
+TEST_P(GraphTest, ConvolutionsOfThePrefixByStep) {
+  // Two 'same' convolutions, each step over the rows so far alone: the row before the last one
+  // changes when its successor comes, so each layer stores two rows.
+  const LinearWeights w1{tensors_.Make({4, 3, 3}, 1, 0.5f), tensors_.Make({4}, 2)};
+  const LinearWeights w2{tensors_.Make({5, 4, 3}, 3, 0.5f), tensors_.Make({5}, 4)};
+  const auto flat = [](const TensorView& w) {
+    return TensorView{w.dtype, {w.shape[0], w.shape[1] * w.shape[2]}, w.data};
+  };
+  const Dense x = X(7, 3);
+  Dense want(7, 5);
+  for (std::int64_t t = 0; t < 7; ++t) {
+    Dense y = RowsOf(x, 0, t + 1);
+    for (const LinearWeights* w : {&w1, &w2})
+      y = ActivateOf(Conv1dOf(y, ToDense(flat(w->weight)), ToDense(w->bias), 3, 1, 1, 1),
+                     Activation::kRelu, 0);
+    for (std::int64_t c = 0; c < 5; ++c) want.at(t, c) = y.at(t, c);
+  }
+  Check(
+      {7, 3}, 24,
+      [&](Graph& g, Value v) {
+        const Value in = g.Buffer({7, 3}), hidden = g.Buffer({7, 4}), out = g.Buffer({7, 5});
+        g.BeginLoop(7);
+        g.StoreRows(in, g.StepRow(v));
+        g.StoreRows(hidden, g.Conv1d(g.LastRows(in, 3), w1, 1, 0, 1, Activation::kRelu));
+        g.StoreRows(out, g.Conv1d(g.LastRows(hidden, 2), w2, 1, 0, 1, Activation::kRelu));
+        g.EndLoop();
+        return out;
+      },
+      want);
+}
+
+TEST_P(GraphTest, PreviousRowStartsWithAGivenRow) {
+  const Dense x = X(4, 2);
+  Dense want(4, 2);
+  for (std::int64_t t = 0; t < 4; ++t) {
+    for (std::int64_t c = 0; c < 2; ++c) want.at(t, c) = t == 0 ? x.at(3, c) : x.at(t - 1, c);
+  }
+  Check(
+      {4, 2}, 1,
+      [](Graph& g, Value v) {
+        const Value copy = g.Buffer({4, 2}), out = g.Buffer({4, 2});
+        g.BeginLoop(4);
+        g.StoreRows(out, g.PreviousRow(copy, g.Rows(v, 3, 1)));
+        g.StoreRows(copy, g.StepRow(v));
+        g.EndLoop();
+        return out;
+      },
+      want);
+}
+
+// Picking tokens: a loop that picks from each row of `logits` and embeds the pick before.
+
+class PickTest : public IsaTest {
+ protected:
+  struct Picked {
+    std::vector<std::int32_t> ids;
+    Dense embedded;
+  };
+
+  Picked Pick(const std::vector<std::vector<float>>& logits, float temperature, float top_k,
+              const std::vector<float>& u) {
+    const auto steps = static_cast<std::int64_t>(logits.size());
+    const auto size = static_cast<std::int64_t>(logits[0].size());
+    static const std::int32_t kFirst[] = {1};
+    Graph g;
+    const Value rows = g.Input("logits", {steps, size}), controls = g.Input("controls", {1, 2});
+    const Value uniforms = g.Input("u", {steps, 1});
+    const Value first = g.Constant({DType::kI32, {1, 1}, kFirst});
+    const Value ids = g.Buffer({steps, 1}, DType::kI32), embedded = g.Buffer({steps, 3});
+    g.BeginLoop(steps);
+    g.StoreRows(embedded, g.Embedding(g.PreviousRow(ids, first), table_));
+    g.StoreRows(ids, g.Pick(g.StepRow(rows), controls, g.StepRow(uniforms)));
+    g.EndLoop();
+    g.Output("ids", ids);
+    g.Output("embedded", embedded);
+    EXPECT_TRUE(g.status().ok()) << g.status().message();
+    const auto session = Make(std::move(g));
+    for (std::size_t t = 0; t < logits.size(); ++t)
+      std::copy(logits[t].begin(), logits[t].end(),
+                session->Input("logits").f32 + t * logits[t].size());
+    session->Input("controls").f32[0] = temperature;
+    session->Input("controls").f32[1] = top_k;
+    std::copy(u.begin(), u.end(), session->Input("u").f32);
+    session->Run();
+    const std::int32_t* picked = session->Output("ids").i32;
+    return {{picked, picked + steps}, ToDense(session->Output("embedded"))};
+  }
+
+  Tensors tensors_;
+  TensorView table_ = tensors_.Make({4, 3}, 5);
+};
+GESTUS_TEST_ON_EVERY_ISA(PickTest);
+
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+constexpr float kInf = std::numeric_limits<float>::infinity();
+
+TEST_P(PickTest, GreedyTakesTheFirstOfTheLargest) {
+  const Picked p = Pick({{0, 3, 1, 3}, {-1, -2, -1, -5}, {5, 5, 5, 5}, {-kInf, -kInf, 0, -kInf}}, 0,
+                        0, {0.9f, 0.9f, 0.9f, 0.9f});
+  EXPECT_EQ(p.ids, (std::vector<std::int32_t>{1, 0, 0, 2}));
+  for (const auto& [step, id] : {std::pair(0, 1), {1, 1}, {2, 0}, {3, 0}}) {
+    for (int c = 0; c < 3; ++c)
+      EXPECT_EQ(p.embedded.at(step, c), table_.f32()[id * 3 + c]) << "step " << step;
+  }
+}
+
+TEST_P(PickTest, DrawsByTheCumulativeSoftmax) {
+  // softmax of ln 1, ln 2, ln 4, ln 1: 1/8, 2/8, 4/8, 1/8.
+  const std::vector<float> row{0.0f, std::log(2.0f), std::log(4.0f), 0.0f};
+  const std::vector<float> u{0.0f, 0.12f, 0.13f, 0.37f, 0.38f, 0.87f, 0.88f, 0.9999999f};
+  EXPECT_EQ(Pick(std::vector(u.size(), row), 1, 0, u).ids,
+            (std::vector<std::int32_t>{0, 0, 1, 1, 2, 2, 3, 3}));
+  // Temperature 1/2 squares the odds: 1, 4, 16, 1 of 22.
+  EXPECT_EQ(Pick(std::vector(4, row), 0.5f, 0, {0.04f, 0.05f, 0.22f, 0.23f}).ids,
+            (std::vector<std::int32_t>{0, 1, 1, 2}));
+}
+
+TEST_P(PickTest, TopKKeepsTheLargestAndTheFirstOfEquals) {
+  const std::vector<float> row{0.0f, 1.0f, 0.0f, 1.0f};
+  const auto all = [&](float k, float u) { return Pick({row}, 1, k, {u}).ids[0]; };
+  EXPECT_EQ(all(1, 0.99f), 1);
+  EXPECT_EQ(all(2, 0.49f), 1);
+  EXPECT_EQ(all(2, 0.51f), 3);
+  EXPECT_EQ(all(3, 0.0f), 0);  // of the two zeros the first is kept
+  EXPECT_EQ(all(3, 0.5f), 1);  // 1 : e : e
+  EXPECT_EQ(all(3, 0.9999f), 3);
+  EXPECT_EQ(all(99, 0.9999f), 3);
+}
+
+TEST_P(PickTest, SurvivesWhatIsNotANumber) {
+  for (const auto& row : {std::vector<float>{kNaN, kNaN, kNaN, kNaN},
+                          {kNaN, 2, kNaN, 1},
+                          {kInf, kInf, 0, 0},
+                          {-kInf, -kInf, -kInf, -kInf}}) {
+    for (const float temperature : {0.0f, 1.0f, kNaN, kInf}) {
+      for (const float k : {0.0f, 2.0f, kNaN, kInf, -kInf}) {
+        for (const float u : {0.0f, 0.5f, kNaN}) {
+          const std::int32_t id = Pick({row}, temperature, k, {u}).ids[0];
+          EXPECT_TRUE(id >= 0 && id < 4) << id;
+        }
+      }
+    }
+  }
+  EXPECT_EQ(Pick({{kNaN, 2, kNaN, 1}}, 1, 1, {0.5f}).ids[0], 1);
 }
 
 // Mistakes in a declaration: one sentence that names the scope, and no later op takes offence.
@@ -583,10 +729,36 @@ const Mistake kMistakes[] = {
        g.BeginLoop(7);
        g.StepRow(x);
      }},
-    {"StoreIntoNoBuffer", "store_row",
+    {"StoreIntoNoBuffer", "store_rows",
      [](Graph& g, Value x, const LinearWeights&) {
        g.BeginLoop(2);
-       g.StoreRow(x, g.StepRow(x));
+       g.StoreRows(x, g.StepRow(x));
+     }},
+    {"FirstRowOfOtherWidth", "previous_row: first row (1, 3)",
+     [](Graph& g, Value, const LinearWeights&) {
+       const Value buffer = g.Buffer({2, 4});
+       g.BeginLoop(2);
+       g.PreviousRow(buffer, g.Zeros({1, 3}));
+     }},
+    {"BufferShorterThanTheLoop", "last_rows: expected a buffer",
+     [](Graph& g, Value, const LinearWeights&) {
+       const Value buffer = g.Buffer({2, 4});
+       g.BeginLoop(3);
+       g.LastRows(buffer, 2);
+     }},
+    {"FloatsIntoABufferOfIntegers", "store_rows: input is float32, expected int32",
+     [](Graph& g, Value, const LinearWeights&) {
+       const Value buffer = g.Buffer({2, 4}, DType::kI32);
+       g.BeginLoop(2);
+       g.StoreRows(buffer, g.Zeros({1, 4}));
+     }},
+    {"PickFromManyRows", "pick: logits (6, 10)",
+     [](Graph& g, Value x, const LinearWeights&) {
+       g.Pick(x, g.Zeros({1, 2}), g.Zeros({1, 1}));
+     }},
+    {"TooManyOps", "more than 16384 ops",
+     [](Graph& g, Value x, const LinearWeights&) {
+       for (int i = 0; i < 20000; ++i) x = g.Softmax(x);
      }},
     {"BufferInsideALoop", "buffer: declare it before",
      [](Graph& g, Value, const LinearWeights&) {

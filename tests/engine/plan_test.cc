@@ -182,7 +182,7 @@ TEST(PlanTest, DropsWhatNoOutputNeeds) {
   const Value x = g.Input("x", {4, 4});
   const Value unused = g.Buffer({4, 4});
   g.BeginLoop(4);
-  g.StoreRow(unused, g.StepRow(x));
+  g.StoreRows(unused, g.StepRow(x));
   g.EndLoop();
   g.Softmax(x);
   g.Output("y", g.Add(x, x));

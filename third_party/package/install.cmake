@@ -1,15 +1,22 @@
-# What `cmake --install` puts where, for programs that embed gestus: the three libraries, their
-# headers, a CMake package (find_package(gestus), target gestus::models) and a pkg-config file.
+# What `cmake --install` puts where, for programs that embed gestus: the libraries, their
+# headers, a CMake package (find_package(gestus), targets gestus::models and gestus::text) and
+# pkg-config files.
 include(CMakePackageConfigHelpers)
 
-foreach(layer kernels engine models)
-  set_target_properties(gestus_${layer} PROPERTIES EXPORT_NAME ${layer})
+set(libraries kernels engine models)
+if(TARGET gestus_text)
+  list(APPEND libraries text)
+endif()
+foreach(library IN LISTS libraries)
+  set_target_properties(gestus_${library} PROPERTIES EXPORT_NAME ${library})
+  install(TARGETS gestus_${library} EXPORT gestus ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 endforeach()
-install(TARGETS gestus_kernels gestus_engine gestus_models EXPORT gestus
-        ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(FILES kernels/kernels.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/gestus/kernels)
 file(GLOB headers RELATIVE ${CMAKE_SOURCE_DIR} engine/*.h models/*.h models/*/*.h)
 list(FILTER headers EXCLUDE REGEX "^models/cli/")
+if(NOT TARGET gestus_text)
+  list(FILTER headers EXCLUDE REGEX "^models/text/")
+endif()
 foreach(header ${headers})
   cmake_path(GET header PARENT_PATH folder)
   install(FILES ${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/gestus/${folder})
@@ -21,7 +28,15 @@ configure_package_config_file(third_party/package/gestusConfig.cmake.in
                               ${CMAKE_BINARY_DIR}/gestusConfig.cmake INSTALL_DESTINATION ${package})
 write_basic_package_version_file(${CMAKE_BINARY_DIR}/gestusConfigVersion.cmake
                                  COMPATIBILITY SameMinorVersion)
-configure_file(third_party/package/gestus.pc.in ${CMAKE_BINARY_DIR}/gestus.pc @ONLY)
 install(FILES ${CMAKE_BINARY_DIR}/gestusConfig.cmake ${CMAKE_BINARY_DIR}/gestusConfigVersion.cmake
         DESTINATION ${package})
-install(FILES ${CMAKE_BINARY_DIR}/gestus.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+
+# gestus-text is apart, so that who wants the networks alone needs no libutf8proc.
+set(pkgconfig_files gestus)
+if(TARGET gestus_text)
+  list(APPEND pkgconfig_files gestus-text)
+endif()
+foreach(name IN LISTS pkgconfig_files)
+  configure_file(third_party/package/${name}.pc.in ${CMAKE_BINARY_DIR}/${name}.pc @ONLY)
+  install(FILES ${CMAKE_BINARY_DIR}/${name}.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+endforeach()
