@@ -226,3 +226,30 @@ def test_joined_axis_that_is_not_there(tmp_path, export):
     code, _, said = export(tmp_path / "m.pt", "classifier", CLASSIFIER, {
         "dense.bias": {"from": ["dense.bias", "dense.bias"], "join": 7}})
     assert code == 2 and "dense.bias: dense.bias, dense.bias of shapes (1,), (1,) cannot" in said
+
+
+def test_verify_takes_the_map_and_keeps_what_accompanies_the_weights(tmp_path, monkeypatch, capfd):
+    """The engine's place is taken by PyTorch with the weights of the file."""
+    from converters import verify
+    from converters.reference.run import build, run
+    tokens = ["[PAD]", "[UNK]", "[SEP]", "[CLS]", "a"]
+    config = {"layers": 1, "d_model": 8, "heads": 2, "d_mlp": 8, "tokens": 5, "positions": 4}
+    want = weights("bert", config)
+    save_checkpoint(tmp_path / "m.pt", {"x." + key: x for key, x in want.items()})
+    (tmp_path / "map.json").write_text('{"*": "x.*"}')
+    (tmp_path / "config.json").write_text(json.dumps(config))
+    (tmp_path / "vocab.txt").write_text("\n".join(tokens))
+    file = str(tmp_path / "m.fb")
+    given = ["--map", str(tmp_path / "map.json")]
+    assert main(["export", str(tmp_path / "m.pt"), "--kind", "bert", "--config", str(
+        tmp_path / "config.json"), "--vocabulary", str(tmp_path / "vocab.txt"), "-o", file,
+        *given]) == 0
+
+    def engine(_, path, inputs):
+        read = weights_file.read(path)
+        tensors = {key: read.tensors[key] for key in [*want, "vocabulary"]}
+        return run(build(read.networks[0], tensors), inputs, taps=True)
+
+    monkeypatch.setattr(verify, "run_engine", engine)
+    assert main(["verify", file, "--checkpoint", str(tmp_path / "m.pt"), *given]) == 0
+    assert "hidden" in capfd.readouterr().out
