@@ -211,12 +211,12 @@ def _epsilon_faults(found, wanted, network):
 def _epsilon(network, key):
     """(what it is called, value or None) of the epsilon that the engine will use for `key`."""
     config = network["config"]
+    where = "config.core." if "core" in config else "config."
     for prefix, ast in _ast_parts(network):
         if key.startswith(prefix + "mlp_head."):
             return "the engine has in AST's head", _AST_HEAD_EPSILON
         if key.startswith(prefix + "v."):
-            return f"config.{prefix}ln_eps", ast["ln_eps"]
-    where = "config.core." if "core" in config else "config."
+            return f"{where}{prefix}ln_eps", ast["ln_eps"]
     config = config.get("core", config)
     name = "ln_eps" if "ln_eps" in config else "decoder_ln_eps"
     return where + name, config.get(name)

@@ -4,6 +4,7 @@ import json
 import re
 
 from . import names
+from .errors import ConvertError
 
 # A key that only one kind of gestus has, the most telling first.
 _MARKS = (("zs_mstm2", "face_lstm.weight_ih_l0"), ("zs_mstm1", "content_attention.in_proj_weight"),
@@ -14,7 +15,10 @@ _MARKS = (("zs_mstm2", "face_lstm.weight_ih_l0"), ("zs_mstm1", "content_attentio
 
 def guess(tensors):
     """Lines about what `tensors` (key -> array) look like; none when they look like nothing."""
-    named = names.canonical(tensors, names.SCHEMES)
+    try:
+        named = names.canonical(tensors, names.SCHEMES)
+    except ConvertError as error:
+        return [f"names that contradict each other: {error}"]
     shapes = {ours: tensors[source.keys[0]].shape for ours, source in named.sources.items()}
     if named.scheme is not None and all(len(shapes.get(key, ())) == rank for key, rank in (
             ("embeddings.word_embeddings.weight", 2), ("embeddings.position_embeddings.weight", 2),

@@ -25,7 +25,7 @@ def _checkpoint(checkpoint):
         _print("layer " + layer)
     for layer, why in checkpoint.refused.items():
         _print(f"not converted: {layer}: {why}")
-    _tensors(checkpoint.tensors)
+    _tensors(checkpoint.tensors, checkpoint.implied)
 
 
 def _weights(path):
@@ -58,12 +58,14 @@ def _fields(config, indent):
                   else f"{indent}{key}: {value}")
 
 
-def _tensors(tensors):
-    elements = 0
+def _tensors(tensors, implied=()):
+    parameters = 0
     for name, array in tensors.items():
-        elements += math.prod(array.shape)
-        _print(f"  {name}  {tuple(array.shape)}  {array.dtype}")
-    print(f"{len(tensors)} tensors, {elements:,} parameters")
+        here = name not in implied
+        parameters += here * math.prod(array.shape)
+        _print(f"  {name}  {tuple(array.shape)}  {array.dtype}"
+               + ("" if here else ", not in the file"))
+    print(f"{len(tensors) - len(implied)} tensors, {parameters:,} parameters")
 
 
 def _print(text):

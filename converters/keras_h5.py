@@ -41,6 +41,8 @@ def read(path):
 def _extract(path):
     """((model_config or None, [(layer, name)]), [array]) in the order of the file."""
     import h5py
+    for _ in range(h5py.h5pl.size()):
+        h5py.h5pl.remove(0)  # no filters from libraries, wherever the file asks for them
     try:
         with h5py.File(path, "r") as file:
             return _File(h5py, path, file).read()

@@ -16,7 +16,7 @@ class Source(NamedTuple):
 
 class Scheme(NamedTuple):
     """`root` and `proof` end two keys that every such checkpoint has; what stands before them is a
-    prefix.  Rules are tried in order; "[0]" behind our key is the place of a part that is joined."""
+    prefix.  Rules are tried in order; "[0]" behind our key is the place of a part to be joined."""
     title: str
     root: str
     proof: str

@@ -6,7 +6,7 @@ import tempfile
 
 import numpy as np
 
-from . import networks, shapes, weights_file
+from . import mapping, networks, shapes, weights_file
 from .checkpoint import read_checkpoint
 from .errors import ConvertError
 from .export import checkpoint_tensors
@@ -19,11 +19,12 @@ def verify(options):
     if len(file.networks) != 1:
         raise ConvertError(f"{options.weights}: {len(file.networks)} networks, expected one")
     network = file.networks[0]
+    tensors = shapes.network_tensors(network, file.network_tensors(network))
     if options.checkpoint:
-        tensors = checkpoint_tensors(read_checkpoint(options.checkpoint), network,
-                                     options.ast and read_checkpoint(options.ast))
-    else:
-        tensors = shapes.network_tensors(network, file.network_tensors(network))
+        # What only accompanies the weights, such as a vocabulary, stays the file's.
+        tensors |= checkpoint_tensors(read_checkpoint(options.checkpoint), network,
+                                      options.ast and read_checkpoint(options.ast),
+                                      options.map and mapping.read(options.map))
     inputs = networks.random_inputs(network, options.seed)
     got = run_engine(options.infer_cli, options.weights, inputs)
     want = run(build(network, tensors), inputs, taps=True)

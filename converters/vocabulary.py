@@ -7,8 +7,8 @@ from .errors import ConvertError
 MAX_BYTES = 16 << 20  # as the engine's
 NEEDED = ("[UNK]", "[CLS]", "[SEP]", "[PAD]")
 
-# SwDA's tags by DialogTag's class index (features.md, section 5.6); its label_map.txt gives names to
-# tags, in an order of its own.
+# SwDA's tags by DialogTag's class index (features.md, section 5.6); its label_map.txt gives names
+# to tags, in an order of its own.
 DIALOG_TAGS = (
     'fo_o_fw_"_by_bc', "ft", "fc", "qw", "^g", "bh", "qy", "qrr", "fp", "qo", "bk", "h", "sv", "ba",
     "nn", "^h", "^2", "aap_am", "qw^d", "qy^d", "ng", "fa", "b", "ny", "t3", "sd", "br", "oo_co_cc",

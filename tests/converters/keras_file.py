@@ -95,6 +95,7 @@ def _write_group(file, layers, **options):
         write_names(group, "weight_names", list(variables))
         for key, x in variables.items():
             group.create_dataset(key, data=x, **options)
+    write_names(file.create_group("top_level_model_weights"), "weight_names", [])
 
 
 def write_names(group, name, names, limit=64512):

@@ -157,14 +157,15 @@ def test_multi_head_attention(read, write):
 
 
 def test_time_distributed_and_nested_models(read):
-    inner = keras.bidirectional("bidirectional", random_lstm("lstm", 3, 4), random_lstm("lstm", 3,
-                                                                                        4, 5))
+    both = [random_lstm("lstm", 3, 4), random_lstm("lstm", 3, 4, seed=5)]
     kernel, bias = numbers(1, 8, 2), numbers(2, 2)
-    encoder = keras.nested("encoder", [keras.layer("InputLayer", "input_1"), inner])
-    found = read([keras.layer("InputLayer", "input_2"), encoder,
-                  keras.time_distributed("time_distributed", keras.dense("dense", kernel, bias)),
-                  keras.nested("heads", [keras.nested("inner", [keras.dense("dense_1", kernel,
-                                                                            bias)], "Sequential")])])
+    inner = keras.nested("inner", [keras.dense("dense_1", kernel, bias)], "Sequential")
+    found = read([
+        keras.layer("InputLayer", "input_2"),
+        keras.nested("encoder", [keras.layer("InputLayer", "input_1"),
+                                 keras.bidirectional("bidirectional", *both)]),
+        keras.time_distributed("time_distributed", keras.dense("dense", kernel, bias)),
+        keras.nested("heads", [inner])])
     assert list(found.tensors) == [
         *[f"encoder.bidirectional.{name}_l0{suffix}" for suffix in ("", "_reverse")
           for name in ("weight_ih", "weight_hh", "bias_ih", "bias_hh")],

@@ -1,6 +1,7 @@
 """--map: tensors under names of anybody's."""
 
 import json
+import pathlib
 
 import numpy as np
 import pytest
@@ -64,8 +65,12 @@ def test_placeholders_transpose_join_and_a_shared_source(tmp_path, export):
     same(tensors, want)
 
 
-def test_keras_autoencoder(tmp_path, export):
-    """Model and map as in docs/converters.md."""
+def map_of_the_docs():
+    page = (pathlib.Path(__file__).resolve().parents[2] / "docs" / "converters.md").read_text()
+    return json.loads(page.partition("```json\n")[2].partition("```")[0])
+
+
+def test_keras_autoencoder_with_the_map_of_the_docs(tmp_path, export):
     keras = pytest.importorskip("keras_file")
     want = weights("autoencoder", AUTOENCODER)
     for key in want:
@@ -86,10 +91,8 @@ def test_keras_autoencoder(tmp_path, export):
         keras.layer("RepeatVector", "repeat_vector", n=5), lstm("decoder.lstm1", "lstm_2"),
         lstm("decoder.lstm2", "lstm_3"), keras.time_distributed("time_distributed", keras.dense(
             "dense", want["decoder.dense.weight"].T, want["decoder.dense.bias"]))])
-    code, tensors, said = export(tmp_path / "ae.h5", "autoencoder", AUTOENCODER, {
-        "encoder.lstm1.*": "bidirectional.*", "encoder.lstm2.*": "bidirectional_1.*",
-        "decoder.lstm1.*": "lstm_2.*", "decoder.lstm2.*": "lstm_3.*",
-        "decoder.dense.*": "time_distributed.*"})
+    code, tensors, said = export(tmp_path / "ae.h5", "autoencoder", AUTOENCODER,
+                                 map_of_the_docs())
     assert code == 0, said
     same(tensors, want)
     assert f"tensors: {len(want)} used, 0 unused, 0 missing" in said
@@ -226,3 +229,30 @@ def test_joined_axis_that_is_not_there(tmp_path, export):
     code, _, said = export(tmp_path / "m.pt", "classifier", CLASSIFIER, {
         "dense.bias": {"from": ["dense.bias", "dense.bias"], "join": 7}})
     assert code == 2 and "dense.bias: dense.bias, dense.bias of shapes (1,), (1,) cannot" in said
+
+
+def test_verify_takes_the_map_and_keeps_what_accompanies_the_weights(tmp_path, monkeypatch, capfd):
+    """The engine's place is taken by PyTorch with the weights of the file."""
+    from converters import verify
+    from converters.reference.run import build, run
+    tokens = ["[PAD]", "[UNK]", "[SEP]", "[CLS]", "a"]
+    config = {"layers": 1, "d_model": 8, "heads": 2, "d_mlp": 8, "tokens": 5, "positions": 4}
+    want = weights("bert", config)
+    save_checkpoint(tmp_path / "m.pt", {"x." + key: x for key, x in want.items()})
+    (tmp_path / "map.json").write_text('{"*": "x.*"}')
+    (tmp_path / "config.json").write_text(json.dumps(config))
+    (tmp_path / "vocab.txt").write_text("\n".join(tokens))
+    file = str(tmp_path / "m.fb")
+    given = ["--map", str(tmp_path / "map.json")]
+    assert main(["export", str(tmp_path / "m.pt"), "--kind", "bert", "--config", str(
+        tmp_path / "config.json"), "--vocabulary", str(tmp_path / "vocab.txt"), "-o", file,
+        *given]) == 0
+
+    def engine(_, path, inputs):
+        read = weights_file.read(path)
+        tensors = {key: read.tensors[key] for key in [*want, "vocabulary"]}
+        return run(build(read.networks[0], tensors), inputs, taps=True)
+
+    monkeypatch.setattr(verify, "run_engine", engine)
+    assert main(["verify", file, "--checkpoint", str(tmp_path / "m.pt"), *given]) == 0
+    assert "hidden" in capfd.readouterr().out
