@@ -30,13 +30,24 @@ def _parser():
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
 
     export = commands.add_parser("export", help="checkpoint -> weights file")
-    export.add_argument("checkpoint", help="file of torch.save (zip format)")
+    export.add_argument("checkpoint", help="file of torch.save (zip format), .safetensors, or "
+                                           "Keras' .h5")
     _network_options(export)
     export.add_argument("-o", "--output", required=True, metavar="WEIGHTS.fb")
     export.add_argument("--ast", metavar="AST.pth",
                         help="published AST checkpoint for the encoders the checkpoint lacks")
+    _map_option(export)
     export.add_argument("--allow-unused", action="store_true",
                         help="leave out tensors that are not part of the network")
+    export.add_argument("--keep-epsilon", action="store_true",
+                        help="take the configuration's LayerNorm epsilons although the "
+                             "checkpoint's layers had others")
+    export.add_argument("--vocabulary", metavar="VOCAB.txt",
+                        help="tokens of a bert, one a line, to travel with the weights")
+    export.add_argument("--labels", metavar="LABELS.txt",
+                        help="names of a bert's classes, one a line, or DialogTag's label_map.txt")
+    export.add_argument("--report", metavar="FILE",
+                        help="what became of every tensor, as text or (.json) as JSON")
     export.add_argument("--no-self-test", action="store_true")
     export.add_argument("--trained", action="store_true", help="say that the weights are trained")
     for name, text in (("trained-on", "corpus"), ("trained-at", "ISO 8601 date"),
@@ -64,6 +75,7 @@ def _parser():
     verify.add_argument("--checkpoint", metavar="CHECKPOINT.pt",
                         help="take PyTorch's weights from here instead of the weights file")
     verify.add_argument("--ast", metavar="AST.pth", help="as for export")
+    _map_option(verify)
     verify.add_argument("--infer-cli", default="infer-cli", metavar="PATH")
     verify.add_argument("--seed", type=int, default=0)
     verify.add_argument("--tolerance", type=float, default=1e-4,
@@ -76,6 +88,11 @@ def _parser():
     return parser
 
 
+def _map_option(parser):
+    parser.add_argument("--map", metavar="MAP.json",
+                        help="which tensors of the checkpoint are ours (docs/converters.md)")
+
+
 def _network_options(parser):
     parser.add_argument("--kind", choices=tuple(kinds.KINDS), default="zs_mstm1")
     parser.add_argument("--config", metavar="CONFIG.json",
@@ -83,33 +100,56 @@ def _network_options(parser):
                              "schema names them; what is absent takes the schema's default")
 
 
-def _network(options):
-    if options.config is None:
-        return networks.default_network(options.kind)
-    with open(options.config, encoding="utf-8") as file:
-        try:
-            fields = json.load(file)
-        except ValueError as error:
-            raise ConvertError(f"{options.config}: {error}") from None
-    if not isinstance(fields, dict):
-        raise ConvertError(f"{options.config}: expected an object with the fields of a network")
+def _network(options, **more):
+    """The network of --kind and --config; `more` are further fields of the configuration."""
+    fields = {} if options.config is None else _config(options.config)
     network = {key: fields.pop(key) for key in networks.NETWORK_FIELDS if key in fields}
     try:
-        return networks.complete(options.kind, {**network, "config": fields})
+        return networks.complete(options.kind, {**network, "config": {**fields, **more}})
     except ConvertError as error:
-        raise ConvertError(f"{options.config}: {error}") from None
+        raise ConvertError(f"{options.config or options.kind}: {error}") from None
+
+
+def _config(path):
+    with open(path, encoding="utf-8") as file:
+        try:
+            fields = json.load(file)
+        except (ValueError, RecursionError) as error:
+            raise ConvertError(f"{path}: {error}") from None
+    if not isinstance(fields, dict):
+        raise ConvertError(f"{path}: expected an object with the fields of a network")
+    return fields
 
 
 def _export(options):
+    from . import mapping, vocabulary
     from .checkpoint import read_checkpoint
     from .export import export
+    from .report import Report
+    if options.kind != "bert" and (options.vocabulary or options.labels):
+        raise ConvertError(f"--vocabulary and --labels: kind {options.kind}, expected bert")
     provenance = {"trained": options.trained, "trained_on": options.trained_on,
                   "trained_at": options.trained_at, "recipe": options.recipe,
                   "licence": options.licence}
-    report = export(read_checkpoint(options.checkpoint), _network(options), options.output,
-                    provenance, ast=options.ast and read_checkpoint(options.ast),
-                    allow_unused=options.allow_unused, self_test=not options.no_self_test)
-    _done(report, options.output)
+    labels = {"labels": vocabulary.read_labels(options.labels)} if options.labels else {}
+    network = _network(options, **labels)
+    extra = {}
+    if options.vocabulary:
+        tokens = network["config"]["tokens"]
+        extra["vocabulary"] = vocabulary.read_vocabulary(options.vocabulary, tokens)
+    checkpoint = read_checkpoint(options.checkpoint)
+    report = Report(checkpoint, network)
+    try:
+        export(checkpoint, network, options.output, provenance, report, extra,
+               ast=options.ast and read_checkpoint(options.ast),
+               given=options.map and mapping.read(options.map), self_test=not options.no_self_test,
+               allow_unused=options.allow_unused, keep_epsilon=options.keep_epsilon)
+    finally:
+        # What is refused needs the lists even more.
+        if options.report:
+            report.write(options.report)
+        _print(report.lines())
+    _done([], options.output)
 
 
 def _random(options):
@@ -144,9 +184,14 @@ def _inspect(options):
     inspect(options.file)
 
 
+def _print(lines):
+    """Keys are a file's content: nothing but printable characters reaches the terminal."""
+    for line in lines:
+        print("".join(c if c.isprintable() else "?" for c in line))
+
+
 def _done(report, output):
-    for line in report:
-        print(line)
+    _print(report)
     print(f"{output}: {os.path.getsize(output):,} bytes")
 
 

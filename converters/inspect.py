@@ -2,7 +2,7 @@
 
 import math
 
-from . import weights_file
+from . import guess, weights_file
 from .checkpoint import read_checkpoint
 
 
@@ -12,9 +12,20 @@ def inspect(path):
     if is_weights:
         _weights(path)
     else:
-        tensors = read_checkpoint(path).tensors
-        print(f"{path}: PyTorch checkpoint")
-        _tensors(tensors)
+        _checkpoint(read_checkpoint(path))
+
+
+def _checkpoint(checkpoint):
+    print(f"{checkpoint.path}: {checkpoint.format}")
+    for line in guess.guess(checkpoint.tensors):
+        _print(line)
+    for note in checkpoint.notes:
+        _print(note)
+    for layer in checkpoint.layers:
+        _print("layer " + layer)
+    for layer, why in checkpoint.refused.items():
+        _print(f"not converted: {layer}: {why}")
+    _tensors(checkpoint.tensors)
 
 
 def _weights(path):
@@ -51,7 +62,10 @@ def _tensors(tensors):
     elements = 0
     for name, array in tensors.items():
         elements += math.prod(array.shape)
-        # Names are a file's content: nothing but printable characters reaches the terminal.
-        shown = "".join(c if c.isprintable() else "?" for c in name)
-        print(f"  {shown}  {tuple(array.shape)}  {array.dtype}")
-    print(f"{len(tensors)} tensors, {elements:,} elements")
+        _print(f"  {name}  {tuple(array.shape)}  {array.dtype}")
+    print(f"{len(tensors)} tensors, {elements:,} parameters")
+
+
+def _print(text):
+    """Names are a file's content: nothing but printable characters reaches the terminal."""
+    print("".join(c if c.isprintable() else "?" for c in text))

@@ -48,6 +48,7 @@ Status GraphNetwork::Init(std::shared_ptr<const WeightsFile> file, const std::st
   UseSelfTest(binder, record);
   GESTUS_RETURN_IF_ERROR(binder.Finish());
   signature_ = Describe();
+  if (!options.plan) return {};
   auto plan = MakePlan(false);
   if (!plan.ok()) return plan.status();
   plan_ = *std::move(plan);

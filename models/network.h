@@ -87,6 +87,9 @@ class Network {
 struct NetworkOptions {
   const kernels::KernelTable* kernels = nullptr;  ///< null: BestTable()
   std::uint64_t max_arena_bytes = std::uint64_t{4} << 30;
+  /// False: only kind and signature are wanted; nothing is packed, Run and PlanText are not for
+  /// use.
+  bool plan = true;
 };
 
 /// Builds the network called `name` (empty: the only one) of `file`: checks its configuration,

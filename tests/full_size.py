@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""ZS-MSTM 1.0 and AST at full size against PyTorch, on every instruction set of this machine.
+"""Every network at full size against PyTorch, on every instruction set of this machine.
 
 Makes random weights from a fixed seed, exports them, and compares the engine's outputs and taps with
 the reference modules (python3 -m converters verify): relative error of each output <= 1e-4.
@@ -13,7 +13,23 @@ import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-MODES = ("Autoregressive", "ShiftedParallel", "Parallel")  # as the schema names them
+NETWORKS = {
+    # name: (kind, configuration beyond the defaults)
+    "zs_mstm1_autoregressive": ("zs_mstm1", {"decoder_mode": "Autoregressive"}),
+    "zs_mstm1_shifted": ("zs_mstm1", {"decoder_mode": "ShiftedParallel"}),
+    "zs_mstm1_parallel": ("zs_mstm1", {"decoder_mode": "Parallel"}),
+    "zs_mstm2": ("zs_mstm2", {}),
+    "ast": ("ast", {}),
+    "bert": ("bert", {}),
+    "distilbert": ("bert", {"layers": 6, "types": 0, "head": "Classifier"}),
+    "ae_speech": ("autoencoder", {"length": 100}),
+    "ae_face": ("autoencoder", {"length": 124}),
+    "model1": ("model1", {}),
+    "model2": ("model2", {}),
+    "model2_speech": ("model2", {"master": "Speech"}),
+    "classifier": ("classifier", {}),
+    "discriminator": ("discriminator", {}),
+}
 
 
 def run(*command, **environment):
@@ -35,6 +51,7 @@ def check(infer_cli, work, name, kind, config, available):
         config_file, "-o", weights, "--checkpoint-out", checkpoint)
     for isa in available:
         print(f"== {name} on {isa}", flush=True)
+        run(infer_cli, "check", weights, GESTUS_ISA=isa)
         run(sys.executable, "-m", "converters", "verify", weights, "--checkpoint", checkpoint,
             "--infer-cli", infer_cli, GESTUS_ISA=isa)
     weights.unlink()
@@ -45,9 +62,8 @@ def main():
     infer_cli, work = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
     work.mkdir(parents=True, exist_ok=True)
     available = isas(infer_cli)
-    for mode in MODES:
-        check(infer_cli, work, f"zs_mstm1_{mode}", "zs_mstm1", {"decoder_mode": mode}, available)
-    check(infer_cli, work, "ast", "ast", {}, available)
+    for name, (kind, config) in NETWORKS.items():
+        check(infer_cli, work, name, kind, config, available)
     print("full size agrees with PyTorch on " + ", ".join(available))
 
 

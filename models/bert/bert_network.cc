@@ -58,7 +58,7 @@ class BertNetwork final : public Network {
         cache_(options.kernels != nullptr ? *options.kernels : kernels::BestTable(), file_),
         max_arena_bytes_(options.max_arena_bytes) {}
 
-  Status Init(const fb::Network& record);
+  Status Init(const fb::Network& record, bool planned);
   const char* kind() const override {
     return c_.head == BertHead::kClassifier ? "BERT with a classifier" : "BERT";
   }
@@ -88,7 +88,7 @@ class BertNetwork final : public Network {
   std::shared_ptr<const Plan> longest_;
 };
 
-Status BertNetwork::Init(const fb::Network& record) {
+Status BertNetwork::Init(const fb::Network& record, bool planned) {
   Result<BertConfig> config =
       ReadBertConfig(*record.config_as_BertConfig(), "network " + record.name()->str());
   if (!config.ok()) return config.status().In(file_->path());
@@ -99,6 +99,7 @@ Status BertNetwork::Init(const fb::Network& record) {
   UseSelfTest(binder, record);
   GESTUS_RETURN_IF_ERROR(binder.Finish());
   signature_ = Describe();
+  if (!planned) return {};
   auto plan = MakePlan(c_.positions, false);
   if (!plan.ok()) return plan.status();
   longest_ = *std::move(plan);
@@ -251,7 +252,7 @@ Result<std::unique_ptr<Network>> MakeBertNetwork(std::shared_ptr<const WeightsFi
                                                  const NetworkOptions& options) {
   const fb::Network& record = *file->FindNetwork(name);
   auto network = std::make_unique<BertNetwork>(std::move(file), options);
-  GESTUS_RETURN_IF_ERROR(network->Init(record));
+  GESTUS_RETURN_IF_ERROR(network->Init(record, options.plan));
   return std::unique_ptr<Network>(std::move(network));
 }
 

@@ -44,6 +44,15 @@ void AddInfer(CLI::App* app, Arguments* a) {
   app->add_option("--repeat", a->repeat, "Runs of each segment, for timing; default 1")
       ->type_name("N")
       ->check(CLI::Range(1, 1000000, ""));
+  app->add_option("--temperature", a->sampling.temperature,
+                  "Variety of networks that choose tokens; default 0, always the likeliest")
+      ->type_name("T")
+      ->check(CLI::Range(0.0, 100.0, ""));
+  app->add_option("--top-k", a->sampling.top_k, "Draw among the K likeliest tokens; default 0, all")
+      ->type_name("K")
+      ->check(CLI::Range(0, 1000000, ""));
+  app->add_option("--seed", a->sampling.seed, "The same seed draws the same tokens; default 0")
+      ->type_name("N");
   app->add_flag("--profile", a->profile, "Time, GFLOP/s and GB/s of every op");
   app->add_flag("--plan", a->plan, "The planned ops and where the arena keeps their values");
   app->add_flag("--taps", a->taps, "Add named intermediates to the output, as tap/NAME");
@@ -66,7 +75,7 @@ Status Missing(const std::string& what) {
 Result<Arguments> ParseArguments(int argc, const char* const* argv) {
   Arguments a;
   bool version = false;
-  CLI::App app("Speech to body motion on the CPU.", "infer-cli");
+  CLI::App app("Speech to expressive face and body motion on the CPU.", "infer-cli");
   app.footer(kFooter);
   app.require_subcommand(0, 1);
   AddInfer(&app, &a);

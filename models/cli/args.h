@@ -5,6 +5,7 @@
 #include <string>
 
 #include "engine/status.h"
+#include "models/network.h"
 
 namespace gestus::cli {
 
@@ -20,6 +21,7 @@ struct Arguments {
   std::string isa;
   int threads = 1;
   int repeat = 1;
+  models::Sampling sampling;
   bool profile = false;
   bool plan = false;
   bool taps = false;

@@ -57,6 +57,7 @@ Result<Arrays> RunNetwork(const Arguments& arguments, const Arrays& inputs, Setu
   models::RunOptions options;
   options.threads = arguments.threads;
   options.repeat = arguments.repeat;
+  options.sampling = arguments.sampling;
   options.profile = arguments.profile;
   options.taps = arguments.taps;
   options.progress = [&progress](std::size_t done, std::size_t total) {
@@ -73,7 +74,9 @@ Result<Arrays> RunNetwork(const Arguments& arguments, const Arrays& inputs, Setu
 }  // namespace
 
 Status RunInfer(const Arguments& arguments) {
-  Result<Setup> setup = OpenNetwork(arguments);
+  // A file that cannot be read is told by ReadInputs, after the weights.
+  const Result<std::vector<std::string>> arrays = ListNpz(arguments.input);
+  Result<Setup> setup = OpenNetwork(arguments, arrays.ok() ? *arrays : std::vector<std::string>{});
   if (!setup.ok()) return setup.status();
   models::RunReport report;
   if (const std::string note = IgnoredIsaNote(); arguments.isa.empty() && !note.empty()) {

@@ -22,12 +22,13 @@ struct NamedNetwork {
 
 // All networks of the file, or the one that --network names.
 Result<std::vector<NamedNetwork>> MakeNetworks(const std::shared_ptr<const WeightsFile>& weights,
-                                               const std::string& name) {
+                                               const std::string& name, bool plan) {
   std::vector<NamedNetwork> networks;
   for (const fb::Network* stored : *weights->root().networks()) {
     const std::string stored_name = stored->name()->str();
     if (!name.empty() && name != stored_name) continue;
-    Result<std::unique_ptr<models::Network>> network = models::MakeNetwork(weights, stored_name);
+    Result<std::unique_ptr<models::Network>> network =
+        models::MakeNetwork(weights, stored_name, {.plan = plan});
     if (!network.ok()) return network.status();
     networks.push_back({stored, *std::move(network)});
   }
@@ -208,7 +209,8 @@ std::string InfoJson(const WeightsFile& weights, const std::vector<NamedNetwork>
 Status RunInfo(const Arguments& arguments) {
   const Result<std::shared_ptr<const WeightsFile>> weights = WeightsFile::Open(arguments.weights);
   if (!weights.ok()) return weights.status();
-  const Result<std::vector<NamedNetwork>> networks = MakeNetworks(*weights, arguments.network);
+  const Result<std::vector<NamedNetwork>> networks =
+      MakeNetworks(*weights, arguments.network, arguments.plan);
   if (!networks.ok()) return networks.status();
   return Print(arguments.json ? InfoJson(**weights, *networks, arguments.plan)
                               : InfoText(**weights, *networks, arguments.plan));

@@ -1,6 +1,7 @@
 // Opening weights and making networks, in the order in which errors are most useful.
 #include "models/cli/setup.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -12,7 +13,46 @@ namespace gestus::cli {
 
 bool Setup::Trained() const { return weights->root().provenance()->trained(); }
 
-Result<Setup> OpenNetwork(const Arguments& arguments) {
+namespace {
+
+/// How well `arrays` fit: by how many of them the network takes, then by whether it needs any of
+/// them; -1 when one is missing that it needs.
+int Fit(const models::Signature& signature, const std::vector<std::string>& arrays) {
+  int taken = 0;
+  bool needs = false;
+  for (const models::ArraySpec& spec : signature.inputs) {
+    const bool given = std::find(arrays.begin(), arrays.end(), spec.name) != arrays.end();
+    if (spec.required && !given) return -1;
+    taken += given;
+    needs = needs || spec.required;
+  }
+  return 2 * taken + (taken > 0 && needs ? 1 : 0);
+}
+
+Result<std::string> ChooseNetwork(const std::shared_ptr<const WeightsFile>& weights,
+                                  const std::vector<std::string>& arrays) {
+  std::string best, names;
+  int most = 0;
+  for (const fb::Network* stored : *weights->root().networks()) {
+    const std::string name = stored->name()->str();
+    names += (names.empty() ? "" : ", ") + name;
+    auto network = models::MakeNetwork(weights, name, {.plan = false});
+    if (!network.ok()) return network.status();
+    const int fit = Fit((*network)->signature(), arrays);
+    if (fit == most) best.clear();  // none is the one
+    if (fit > most) {
+      most = fit;
+      best = name;
+    }
+  }
+  if (!best.empty()) return best;
+  return Status(Code::kInvalidArgument, weights->path() + ": the input does not tell which of " +
+                                            names + " is meant, expected --network NAME");
+}
+
+}  // namespace
+
+Result<Setup> OpenNetwork(const Arguments& arguments, const std::vector<std::string>& arrays) {
   const Result<const kernels::KernelTable*> kernels = ChooseKernels(arguments.isa);
   if (!kernels.ok()) return kernels.status();
   Setup setup;
@@ -20,10 +60,16 @@ Result<Setup> OpenNetwork(const Arguments& arguments) {
   Result<std::shared_ptr<const WeightsFile>> weights = WeightsFile::Open(arguments.weights);
   if (!weights.ok()) return weights.status();
   setup.weights = *std::move(weights);
+  std::string name = arguments.network;
+  if (name.empty() && !arrays.empty() && setup.weights->root().networks()->size() > 1) {
+    Result<std::string> chosen = ChooseNetwork(setup.weights, arrays);
+    if (!chosen.ok()) return chosen.status();
+    name = *std::move(chosen);
+  }
   models::NetworkOptions options;
   options.kernels = setup.kernels;
   Result<std::unique_ptr<models::Network>> network =
-      models::MakeNetwork(setup.weights, arguments.network, options);
+      models::MakeNetwork(setup.weights, name, options);
   if (!network.ok()) return network.status();
   setup.network = *std::move(network);
   return setup;

@@ -3,6 +3,8 @@
 #define GESTUS_MODELS_CLI_SETUP_H_
 
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "engine/status.h"
 #include "engine/weights_file.h"
@@ -19,8 +21,10 @@ struct Setup {
   bool Trained() const;
 };
 
-/// Opens the weights and builds the network that the command line names.
-Result<Setup> OpenNetwork(const Arguments& arguments);
+/// Opens the weights and builds the network that the command line names.  Where it names none and
+/// the file holds several, it is the one that takes most of `arrays`, the names of what is to be
+/// run.
+Result<Setup> OpenNetwork(const Arguments& arguments, const std::vector<std::string>& arrays = {});
 
 /// What a user of untrained weights must know.
 constexpr const char* kUntrained = "UNTRAINED weights: output is noise";

@@ -123,7 +123,8 @@ Status LoadStyle(const Setup& setup, const std::string& path, Arrays* inputs) {
 }
 
 Status RunStyle(const Arguments& arguments) {
-  Result<Setup> setup = OpenNetwork(arguments);
+  // In a bundle the network is the one with a style, whatever the clip calls its arrays.
+  Result<Setup> setup = OpenNetwork(arguments, {"style"});
   if (!setup.ok()) return setup.status();
   const Result<std::vector<std::string>> names = ListNpz(arguments.input);
   if (!names.ok()) return names.status();

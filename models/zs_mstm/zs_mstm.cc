@@ -35,6 +35,7 @@ Result<std::shared_ptr<const ZsMstm>> ZsMstm::Make(std::shared_ptr<const Weights
   UseSelfTest(binder, *network);
   GESTUS_RETURN_IF_ERROR(binder.Finish());
 
+  if (!options.planned) return std::shared_ptr<const ZsMstm>(std::move(model));
   const kernels::KernelTable& table =
       options.kernels != nullptr ? *options.kernels : kernels::BestTable();
   WeightCache cache(table, file);

@@ -27,6 +27,7 @@ class ZsMstmAgent;
 struct ZsMstmOptions {
   const kernels::KernelTable* kernels = nullptr;  ///< null: BestTable()
   PlanOptions plan;
+  bool planned = true;  ///< false: only the configuration is wanted
 };
 
 class ZsMstm {

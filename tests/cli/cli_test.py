@@ -224,11 +224,69 @@ class InfoTest(CliTest):
         weights_file.write(self.path("wrong.fb"), file.networks, tensors, file.provenance)
         self.bad("check", "wrong.fb", says=("wrong.fb", "self-test", "relative error"))
 
+    def test_sampling(self):
+        with np.load(golden("model2_text.npz")) as arrays:
+            given = self.save("words.npz", {name: arrays[name] for name in ("f0", "text")})
+        drawn = {}
+        for name, options in (("greedy", ()), ("drawn", ("--temperature", "2", "--seed", "1")),
+                              ("again", ("--temperature", "2", "--seed", "1")),
+                              ("other", ("--temperature", "2", "--seed", "2")),
+                              ("one", ("--temperature", "2", "--top-k", "1"))):
+            self.good(golden("model2_text.fb"), given, "-o", name + ".npz", *options)
+            with np.load(self.path(name + ".npz")) as arrays:
+                drawn[name] = arrays["tokens"].tolist()
+        self.assertEqual(drawn["drawn"], drawn["again"])
+        self.assertEqual(drawn["greedy"], drawn["one"])
+        self.assertNotEqual(drawn["drawn"], drawn["other"])
+        self.bad(golden("model2_text.fb"), given, "--temperature", "-1", says=("temperature",))
+
     def test_help_and_version(self):
         self.assertIn("Exit codes", self.good("--help"))
         self.assertIn("available", self.good("--version"))
         self.assertIn(json.loads(self.good("--version", "--json"))["isa"],
                       ("scalar", "sse2", "neon", "avx2", "avx512"))
+
+
+class BundleTest(CliTest):
+    """Several networks in one file."""
+
+    def setUp(self):
+        super().setUp()
+        self.bundle = self.path("bundle.fb")
+        subprocess.run([sys.executable, "-m", "converters", "bundle", self.WEIGHTS,
+                        self.AST_WEIGHTS, "acts=" + golden("bert_classifier.fb"),
+                        golden("classifier_one_layer.fb"), "-o", self.bundle],
+                       check=True, capture_output=True, cwd=ROOT)
+
+    def test_the_input_tells_which(self):
+        alone = self.path("alone.npz")
+        for case, weights, kind in (("frame_autoregressive", self.WEIGHTS, "ZS-MSTM 1.0"),
+                                    ("ast_cls", self.AST_WEIGHTS, "AST"),
+                                    ("classifier_one_layer", golden("classifier_one_layer.fb"),
+                                     "classifier"),
+                                    ("bert_classifier", golden("bert_classifier.fb"), "BERT")):
+            info = json.loads(self.good("info", weights, "--json"))["networks"][0]
+            names = [a["name"] for a in info["inputs"] if a["name"] != "style"]
+            with np.load(golden(case + ".npz")) as arrays:
+                given = self.save("given.npz", {n: arrays[n] for n in names if n in arrays})
+            self.assertIn(kind, info["kind"])
+            self.good(self.bundle, given, "-o", "bundled.npz")
+            self.good(weights, given, "-o", alone)
+            with np.load(self.path("bundled.npz")) as got, np.load(alone) as want:
+                self.assertEqual(sorted(got.files), sorted(want.files))
+                for name in got.files:
+                    np.testing.assert_array_equal(got[name], want[name])
+
+    def test_input_of_none(self):
+        given = self.save("given.npz", {"music": np.zeros((3, 3), np.float32)})
+        self.bad(self.bundle, given, says=("--network", "acts"))
+        self.bad(self.bundle, given, "--network", "acts", says=("ids",))
+
+    def test_style_and_self_tests(self):
+        self.good("style", self.bundle, "input.npz", "-o", "a.style")
+        self.good(self.bundle, "input.npz", "--style", "a.style", "-o", "out.npz")
+        report = json.loads(self.good("check", self.bundle, "--json"))
+        self.assertEqual([n["self_test"] for n in report["networks"]], ["passed"] * 4)
 
 
 if __name__ == "__main__":
