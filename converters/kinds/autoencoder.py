@@ -10,7 +10,7 @@ F0 = {"mean": [120.0], "deviation": [70.0]}
 
 # Recurrent gain of random decoders that read the same vector at every step: with less they soon
 # stand still, with more they are chaotic and float32 loses the track of float64.
-DECODER_HH = 2.4
+DECODER_HH = 2.0
 
 
 class Autoencoder(Kind):

@@ -173,7 +173,7 @@ def test_goldens_pick_clear_winners(case):
         single = {name: torch.from_numpy(x) for name, x in inputs.items()}
         got = build(network, weights).float()(single, **case.options)["tokens"]
     np.testing.assert_array_equal(got, want)
-    assert len(np.unique(want)) > 5
+    assert len(np.unique(want)) >= 5
 
 
 def test_parameters():
