@@ -140,10 +140,10 @@ GESTUS_INLINE void gemm_slice(const GemmArgs& args, const GemmSlice& slice) {
   const float* b = args.packed + slice.column * args.k + slice.k_begin * Tile::kColumns;
   const bool first = slice.k_begin == 0;
   const bool last = slice.k_begin + slice.k == args.k;
-  // Each tile asks for a kTileUnroll-th of the lines of the next slice (a line or more per k), the
-  // tiles after that for the lines at hand, which costs nothing.
+  // Each tile asks for its share of the lines of the next slice, the tiles after that for the lines
+  // at hand, which costs nothing.
   const std::size_t lines = Tile::kColumns * sizeof(float) * slice.k / 64;
-  const std::size_t ahead_step = slice.k / kTileUnroll;
+  const std::size_t ahead_step = slice.k / kTileUnroll * kLinesAhead<Arch>;
   std::size_t ahead = 0;
   for (std::size_t row = slice.m_begin; row < slice.m_end;) {
     const std::size_t rows = next_tile_rows<Arch>(slice.m_end - row);
