@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The command line: export, random, bundle, verify, inspect."""
+"""The command line: export, random, example, bundle, verify, inspect."""
 
 import argparse
 import json
@@ -81,6 +81,13 @@ def _parser():
     verify.add_argument("--tolerance", type=float, default=1e-4,
                         help="largest relative error of any value (default %(default)s)")
     verify.set_defaults(run=_verify)
+
+    example = commands.add_parser("example", help="an input of plausible size for a weights file")
+    example.add_argument("weights", metavar="WEIGHTS.fb")
+    example.add_argument("-o", "--output", required=True, metavar="INPUT.npz")
+    example.add_argument("--network", metavar="NAME", help="of a file that holds several")
+    example.add_argument("--seed", type=int, default=0)
+    example.set_defaults(run=_example)
 
     inspect = commands.add_parser("inspect", help="what a checkpoint or a weights file holds")
     inspect.add_argument("file")
@@ -177,6 +184,23 @@ def _bundle(options):
 def _verify(options):
     from .verify import verify
     return verify(options)
+
+
+def _example(options):
+    import numpy as np
+    from . import weights_file
+    if options.seed < 0:
+        raise ConvertError(f"--seed: {options.seed}, expected 0 or more")
+    file = weights_file.read(options.weights)
+    found = [n for n in file.networks if options.network in (None, n["name"])]
+    if len(found) != 1:
+        raise ConvertError(f"{options.weights}: expected --network with one of "
+                           + ", ".join(n["name"] for n in file.networks))
+    inputs = networks.random_inputs(found[0], options.seed)
+    with open(options.output, "wb") as output:
+        np.savez(output, **inputs)
+    _done([f"{name}: {array.shape} {array.dtype}" for name, array in inputs.items()],
+          options.output)
 
 
 def _inspect(options):

@@ -247,6 +247,24 @@ class InfoTest(CliTest):
                       ("scalar", "sse2", "neon", "avx2", "avx512"))
 
 
+class ExampleTest(CliTest):
+    """python3 -m converters example makes what infer-cli takes, for every kind of network."""
+
+    def test_every_golden(self):
+        folder = os.path.dirname(self.WEIGHTS)
+        seen = set()
+        for name in sorted(os.listdir(folder)):
+            kind = name.split("_")[0]
+            if not name.endswith(".fb") or kind in seen:
+                continue
+            seen.add(kind)
+            subprocess.run([sys.executable, "-m", "converters", "example", golden(name), "-o",
+                            self.path("example.npz")], check=True, capture_output=True, cwd=ROOT)
+            self.good(golden(name), "example.npz", "-o", "out.npz")
+        self.assertGreaterEqual(seen, {"ast", "autoencoder", "bert", "classifier",
+                                       "discriminator", "model1", "model2", "zs"})
+
+
 class BundleTest(CliTest):
     """Several networks in one file."""
 
