@@ -181,6 +181,7 @@ class Graph {
   /// One index of the row `logits`, int32 (1, 1).  controls (1, 2) holds temperature and top-k:
   /// temperature 0 takes the largest logit, the first of equals; otherwise an index is drawn from
   /// softmax(logits / temperature) over the k largest logits (0: over all) with u (1, 1) in [0, 1).
+  /// -1 when a logit is NaN or +inf.
   Value Pick(Value logits, Value controls, Value u);
 
   void Output(const std::string& name, Value x);

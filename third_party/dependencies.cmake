@@ -33,6 +33,10 @@ endif()
 
 find_package(Threads REQUIRED)
 
+# Headers only, which serve every architecture: the FFT of Eigen for models/audio, JSON for models/io.
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(nlohmann_json 3.11 REQUIRED)
+
 # libzip reads and writes .npz, CLI11 parses the command line.
 if(GESTUS_BUILD_CLI OR GESTUS_BUILD_TESTS)
   find_package(PkgConfig)
@@ -48,6 +52,5 @@ endif()
 
 if(GESTUS_BUILD_BENCH)
   find_package(benchmark 1.7 REQUIRED)
-  find_package(Eigen3 3.4 REQUIRED NO_MODULE)
   find_package(OpenMP REQUIRED COMPONENTS CXX)
 endif()

@@ -22,19 +22,25 @@ class PickOp final : public BoundOp {
 
   void Run(const Worker& worker) const noexcept override {
     if (worker.index != 0) return;
-    *out_ = static_cast<std::int32_t>(controls_[0] > 0 ? Draw() : Largest());
+    *out_ = !Comparable()      ? -1
+            : controls_[0] > 0 ? static_cast<std::int32_t>(Draw())
+                               : static_cast<std::int32_t>(Largest());
   }
 
  private:
+  /// False for NaN, which must not reach a comparison that orders, and for +inf, whose softmax is
+  /// NaN.
+  bool Comparable() const {
+    return std::all_of(logits_, logits_ + size_,
+                       [](float x) { return x < std::numeric_limits<float>::infinity(); });
+  }
+
   std::size_t Largest() const {
     return static_cast<std::size_t>(std::max_element(logits_, logits_ + size_) - logits_);
   }
 
   std::size_t Draw() const {
-    // Not a number never wins, and must not reach a comparison that orders.
-    std::transform(logits_, logits_ + size_, ordered_, [](float x) {
-      return std::isnan(x) ? -std::numeric_limits<float>::infinity() : x;
-    });
+    std::copy_n(logits_, size_, ordered_);
     const float top_k = controls_[1];
     const bool all = !(top_k >= 1 && top_k < static_cast<float>(size_));
     const std::size_t kept = all ? size_ : static_cast<std::size_t>(top_k);

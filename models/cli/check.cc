@@ -4,7 +4,7 @@
 #include "models/cli/json.h"
 #include "models/cli/machine.h"
 #include "models/cli/setup.h"
-#include "models/cli/text.h"
+#include "models/io/text.h"
 #include "models/self_test.h"
 #include "weights_generated.h"
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "models/cli/info.h"
-#include "models/cli/text.h"
+#include "models/io/text.h"
 #include "weights_bfbs_generated.h"
 #include "weights_generated.h"
 

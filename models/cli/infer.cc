@@ -7,7 +7,7 @@
 #include "models/cli/report.h"
 #include "models/cli/setup.h"
 #include "models/cli/style.h"
-#include "models/cli/text.h"
+#include "models/io/text.h"
 
 namespace gestus::cli {
 namespace {

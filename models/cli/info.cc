@@ -5,7 +5,7 @@
 
 #include "models/cli/json.h"
 #include "models/cli/setup.h"
-#include "models/cli/text.h"
+#include "models/io/text.h"
 #include "weights_generated.h"
 
 namespace gestus::cli {

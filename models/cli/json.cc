@@ -5,7 +5,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "models/cli/text.h"
+#include "models/io/text.h"
 
 namespace gestus::cli {
 namespace {

@@ -17,7 +17,7 @@
 #include "models/cli/machine.h"
 #include "models/cli/setup.h"
 #include "models/cli/style.h"
-#include "models/cli/text.h"
+#include "models/io/text.h"
 
 namespace {
 
@@ -71,6 +71,6 @@ int main(int argc, char** argv) {
   }
   if (status.ok()) return 0;
   constexpr std::size_t kMaxLine = 299;  // and a newline
-  std::fprintf(stderr, "%s\n", OneLine("infer-cli: " + status.message(), kMaxLine).c_str());
+  std::fprintf(stderr, "%s\n", gestus::OneLine("infer-cli: " + status.message(), kMaxLine).c_str());
   return 2;
 }

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "engine/status.h"
-#include "models/cli/file.h"
+#include "models/io/file.h"
 #include "models/network.h"
 
 namespace gestus::cli {

@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "models/cli/text.h"
+#include "models/io/text.h"
 
 namespace gestus::cli {
 namespace {

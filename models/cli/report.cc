@@ -5,7 +5,7 @@
 
 #include "models/cli/json.h"
 #include "models/cli/npy.h"
-#include "models/cli/text.h"
+#include "models/io/text.h"
 
 namespace gestus::cli {
 namespace {

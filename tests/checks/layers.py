@@ -7,22 +7,35 @@ import re
 import sys
 import tempfile
 
+# The front ends beside the networks, and what each may know of the others.
+FRONT_ENDS = {
+    "models/io": set(),
+    "models/text": set(),
+    "models/audio": {"models/io"},
+    "models/prosody": {"models/io", "models/audio"},
+    "models/words": {"models/io"},
+    "models/motion": {"models/io"},
+    "models/features": {"models/io", "models/text", "models/audio", "models/prosody",
+                        "models/words", "models/motion", "models"},
+}
+ALL_MODELS = {"models", "engine", "kernels", *FRONT_ENDS}
 # What the files of a folder may include from this project; the longest matching folder counts.
 ALLOWED = {
     "kernels": {"kernels"},
     "engine": {"engine", "kernels"},
     "models": {"models", "engine", "kernels"},
-    "models/text": {"models/text", "engine"},
-    "models/cli": {"models/cli", "models/text", "models", "engine", "kernels"},
-    "bench": {"bench", "models/text", "models", "engine", "kernels"},
-    "tests": {"tests", "models/cli", "models/text", "models", "engine", "kernels"},
+    **{folder: {folder, "engine", "kernels", *known} for folder, known in FRONT_ENDS.items()},
+    "models/cli": {"models/cli", *ALL_MODELS},
+    "bench": {"bench", *ALL_MODELS},
+    "tests": {"tests", "models/cli", *ALL_MODELS},
 }
 # Of the kernels' inside only the kernels themselves know, and the tests' oracle.
 INSIDE = re.compile(r"kernels/(isa/|.*\.inl\.h)")
 # Within the layers libraries meet only where they belong.
 # The probe of the machine's peak is a kernel itself, one that only the benches link.
 PROBE = "bench/peak_probe.cc"
-LIBRARIES = {"xsimd": {"kernels"}, "Eigen": {"bench"}, "zip.h": {"models/cli", "tests"},
+LIBRARIES = {"xsimd": {"kernels"}, "Eigen": {"bench", "models/audio"}, "unsupported": {"models/audio"},
+             "nlohmann": {"models/io"}, "zip.h": {"models/cli", "tests"},
              "CLI": {"models/cli"}, "utf8proc.h": {"models/text"}}
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', re.M)
 
@@ -56,6 +69,7 @@ def self_test():
         "engine/b.cc": ('#include "models/x.h"\n#include <xsimd/xsimd.hpp>', 2),
         "models/c.h": ('#include "models/cli/npz.h"\n#include <utf8proc.h>', 2),
         "models/text/h.cc": ('#include "models/network.h"\n#include <utf8proc.h>', 1),
+        "models/words/i.cc": ('#include "models/audio/wav.h"\n#include <nlohmann/json.hpp>', 2),
         "models/cli/d.cc": ('#include "tests/e.h"\n#include "models/f.h"', 1),
         "tests/g.cc": ('#include "kernels/gemm.inl.h"\n#include "kernels/kernels.h"', 1),
     }

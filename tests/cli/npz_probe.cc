@@ -7,9 +7,9 @@
 #include <sstream>
 #include <string>
 
-#include "models/cli/file.h"
 #include "models/cli/npz.h"
-#include "models/cli/text.h"
+#include "models/io/file.h"
+#include "models/io/text.h"
 
 namespace {
 
@@ -22,7 +22,7 @@ Status Copy(const std::string& in, const std::string& name, const std::string& d
   spec.dtype = dtype == "int32" ? gestus::DType::kI32 : gestus::DType::kF32;
   const auto contents = gestus::cli::ReadNpz(in, {spec});
   if (!contents.ok() || out == "-") return contents.status();
-  auto file = gestus::cli::AtomicFile::Create(out);
+  auto file = gestus::AtomicFile::Create(out);
   if (!file.ok()) return file.status();
   GESTUS_RETURN_IF_ERROR(gestus::cli::WriteNpz(contents->arrays, &*file));
   return file->Commit();
@@ -41,7 +41,7 @@ int main() {
     std::getline(fields, out, '\t');
     try {
       const Status status = Copy(in, name, dtype, out);
-      std::puts(status.ok() ? "ok" : ("error: " + gestus::cli::OneLine(status.message())).c_str());
+      std::puts(status.ok() ? "ok" : ("error: " + gestus::OneLine(status.message())).c_str());
     } catch (const std::bad_alloc&) {
       std::puts("crash: out of memory");
     }

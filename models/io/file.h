@@ -1,7 +1,7 @@
 // Opens files for reading, and writes outputs so that a path always holds either the old file or
 // the complete new one, whatever happens in between.
-#ifndef GESTUS_MODELS_CLI_FILE_H_
-#define GESTUS_MODELS_CLI_FILE_H_
+#ifndef GESTUS_MODELS_IO_FILE_H_
+#define GESTUS_MODELS_IO_FILE_H_
 
 #include <cstddef>
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 #include "engine/status.h"
 
-namespace gestus::cli {
+namespace gestus {
 
 /// A file descriptor that closes itself.
 class Descriptor {
@@ -76,6 +76,6 @@ class AtomicFile {
   Descriptor fd_;
 };
 
-}  // namespace gestus::cli
+}  // namespace gestus
 
-#endif  // GESTUS_MODELS_CLI_FILE_H_
+#endif  // GESTUS_MODELS_IO_FILE_H_

@@ -1,14 +1,14 @@
 // Text for people: numbers with sensible digits, tables, and messages that stay on one line
 // whatever a file put into them.  No function depends on the locale.
-#ifndef GESTUS_MODELS_CLI_TEXT_H_
-#define GESTUS_MODELS_CLI_TEXT_H_
+#ifndef GESTUS_MODELS_IO_TEXT_H_
+#define GESTUS_MODELS_IO_TEXT_H_
 
 #include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
 
-namespace gestus::cli {
+namespace gestus {
 
 /// `text` with control characters and bytes that are not UTF-8 escaped ("\x1b"), shortened in the
 /// middle to at most `max_bytes`.
@@ -33,6 +33,6 @@ std::string Table(const std::vector<std::vector<std::string>>& rows,
                   const std::vector<std::size_t>& right_aligned = {},
                   const std::string& indent = "  ");
 
-}  // namespace gestus::cli
+}  // namespace gestus
 
-#endif  // GESTUS_MODELS_CLI_TEXT_H_
+#endif  // GESTUS_MODELS_IO_TEXT_H_

@@ -1,5 +1,5 @@
 // Outputs appear complete or not at all.
-#include "models/cli/file.h"
+#include "models/io/file.h"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -11,7 +11,7 @@
 #include <fstream>
 #include <sstream>
 
-namespace gestus::cli {
+namespace gestus {
 namespace {
 
 namespace fs = std::filesystem;
@@ -126,4 +126,4 @@ TEST(OpenInput, RefusesWhatIsNoFile) {
 }
 
 }  // namespace
-}  // namespace gestus::cli
+}  // namespace gestus

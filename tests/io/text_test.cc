@@ -1,9 +1,9 @@
 // Messages that stay on one line, and numbers that do not depend on the locale.
-#include "models/cli/text.h"
+#include "models/io/text.h"
 
 #include <gtest/gtest.h>
 
-namespace gestus::cli {
+namespace gestus {
 namespace {
 
 TEST(OneLine, ControlsAndBrokenUtf8AreEscaped) {
@@ -48,4 +48,4 @@ TEST(Table, AlignsColumns) {
 }
 
 }  // namespace
-}  // namespace gestus::cli
+}  // namespace gestus

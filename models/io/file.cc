@@ -1,6 +1,6 @@
 // File access by system calls: streams of the standard library do not say why something failed,
 // and have no way to sync, to link or to ask for a file without a name.
-#include "models/cli/file.h"
+#include "models/io/file.h"
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -11,7 +11,7 @@
 #include <cstdlib>
 #include <cstring>
 
-namespace gestus::cli {
+namespace gestus {
 namespace {
 
 Status SystemError(const std::string& what, int error) {
@@ -176,4 +176,4 @@ Status AtomicFile::Commit() {
   return Status();
 }
 
-}  // namespace gestus::cli
+}  // namespace gestus

@@ -1,12 +1,12 @@
 // std::to_chars is used for every number with a point: printf would follow the locale.
-#include "models/cli/text.h"
+#include "models/io/text.h"
 
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
 
-namespace gestus::cli {
+namespace gestus {
 namespace {
 
 // Bytes of the UTF-8 character at the start of `text`; 0 when there is none, or one that a
@@ -136,4 +136,4 @@ std::string Table(const std::vector<std::vector<std::string>>& rows,
   return text;
 }
 
-}  // namespace gestus::cli
+}  // namespace gestus
