@@ -40,6 +40,10 @@ class Kind:
         """Joints of networks that name none."""
         return []
 
+    def features(self, _config):
+        """What the front end must be told (the schema's Features), where it is not the default."""
+        return {}
+
     def ast_parts(self, _config):
         """(prefix of keys, configuration) of every AST inside."""
         return []

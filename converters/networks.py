@@ -5,7 +5,7 @@ from .errors import ConvertError
 from .inputs import Streams
 
 # Fields of the schema's Network, beside its configuration, that whoever exports may choose.
-NETWORK_FIELDS = ("name", "prefix", "joints", "normalisations")
+NETWORK_FIELDS = ("name", "prefix", "joints", "normalisations", "features")
 
 
 def default_network(kind):
@@ -31,6 +31,10 @@ def complete(name, network):
     joints = kind.joints(network["config"])
     if "joints" not in network and joints:
         network["joints"] = joints
+    features = {**kind.features(network["config"]), **network.get("features", {})}
+    if features:
+        network["features"] = features
+    _check_features(network, kind.features(network["config"]))
     _check_streams(network, kind.streams(network["config"]))
     return network
 
@@ -41,6 +45,14 @@ def random_inputs(network, seed, **sizes):
     kind, config = kinds.of(network), network["config"]
     streams = Streams(kind.streams(config), network.get("normalisations", []), seed)
     return kind.inputs(config, streams, **sizes)
+
+
+def _check_features(network, own):
+    """What the front end is told must fit the widths of the network's inputs."""
+    for name in ("landmarks", "tags"):
+        given, wanted = network.get("features", {}).get(name), own.get(name)
+        if given is not None and wanted is not None and len(given) != len(wanted):
+            raise ConvertError(f"features.{name}: {len(given)}, expected {len(wanted)}")
 
 
 def _check_streams(network, widths):

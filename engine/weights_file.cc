@@ -173,12 +173,13 @@ Status CheckTensor(const fb::Tensor& t, std::size_t index, const std::uint8_t* d
   return {};
 }
 
-Status CheckJoints(const fb::Network& n) {
-  if (n.joints() == nullptr) return {};
-  const std::int64_t count = n.joints()->size();
+Status CheckJoints(const flatbuffers::Vector<flatbuffers::Offset<fb::Joint>>* joints,
+                   const std::string& what) {
+  if (joints == nullptr) return {};
+  const std::int64_t count = joints->size();
   for (std::int64_t i = 0; i < count; ++i) {
-    const fb::Joint& joint = *n.joints()->Get(static_cast<flatbuffers::uoffset_t>(i));
-    const std::string where = "joint number " + std::to_string(i) + ": ";
+    const fb::Joint& joint = *joints->Get(static_cast<flatbuffers::uoffset_t>(i));
+    const std::string where = what + " number " + std::to_string(i) + ": ";
     if (!PrintableName(joint.name()->string_view()))
       return Bad(where + "name is empty, longer than 255 bytes or not printable");
     if (joint.parent() < -1 || joint.parent() >= count || joint.parent() == i)
@@ -191,6 +192,15 @@ Status CheckJoints(const fb::Network& n) {
 /// Everything of a network that a message may quote.
 Status CheckTexts(const fb::Network& n) {
   if (!Printable(n.prefix()->string_view())) return Bad("prefix is too long or not printable");
+  if (n.features() != nullptr) {
+    GESTUS_RETURN_IF_ERROR(CheckJoints(n.features()->landmarks(), "landmark"));
+    if (n.features()->tags() != nullptr) {
+      for (const flatbuffers::String* tag : *n.features()->tags()) {
+        if (!PrintableName(tag->string_view()))
+          return Bad("features: a tag is empty, longer than 255 bytes or not printable");
+      }
+    }
+  }
   if (const fb::SelfTest* test = n.self_test()) {
     bool good =
         Printable(test->output()->string_view()) && Printable(test->output_name()->string_view());
@@ -211,7 +221,7 @@ Status CheckNetworks(const fb::WeightsFile& root) {
       return Bad("network " + std::string(name) + ": no configuration");
     if (static_cast<std::uint8_t>(n->config_type()) > static_cast<std::uint8_t>(fb::Config::MAX))
       return Bad("network " + std::string(name) + ": of a kind this version does not know");
-    GESTUS_RETURN_IF_ERROR(CheckJoints(*n).In("network " + std::string(name)));
+    GESTUS_RETURN_IF_ERROR(CheckJoints(n->joints(), "joint").In("network " + std::string(name)));
     GESTUS_RETURN_IF_ERROR(CheckTexts(*n).In("network " + std::string(name)));
     names.push_back(name);
   }

@@ -7,6 +7,8 @@ from ..layers import linear, norm
 # Of log_mel_512 (converters/features.py) on read speech; PATS' own values are not published.
 SPEECH = {"stream": "speech", "mean": [-6.0], "deviation": [3.5]}
 
+PUBLISHED_FRAMES = 1024
+
 # Queries and keys are large so that attention picks rows instead of averaging over all of them,
 # which would leave the output constant along time.
 GAINS = {"attn.qkv.weight": 1.3}
@@ -75,6 +77,10 @@ class Ast(Kind):
 
     def demo(self):
         return {"normalisations": [SPEECH]}
+
+    def features(self, config):
+        # The published AST hears ten seconds of Kaldi's filter bank; the thesis' hears 64 motion frames.
+        return {"speech": "FilterBank"} if config["frames"] == PUBLISHED_FRAMES else {}
 
     def ast_parts(self, config):
         return [("", config)]

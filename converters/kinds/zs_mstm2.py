@@ -6,6 +6,7 @@ from .. import layers
 from ..checks import positive
 from ..kind import Kind
 from . import ast, zs_mstm1
+from .bert import DIALOG_ACTS
 
 # Fifteen of OpenPose's face points (features.md, section 6), at rest in the units of PATS_JOINTS.
 FACE_POINTS = (
@@ -74,6 +75,14 @@ class ZsMstm2(Kind):
 
     def joints(self, config):
         return zs_mstm1.pats_joints(config["core"]["d_pose"])
+
+    def features(self, config):
+        features = {}
+        if config["d_face"] == 2 * len(FACE_POINTS):
+            features["landmarks"] = [{"name": f"face{i}", "source": i} for i, _ in FACE_POINTS]
+        if config["d_tags"] == len(DIALOG_ACTS):
+            features["tags"] = list(DIALOG_ACTS)
+        return features
 
     def ast_parts(self, config):
         return zs_mstm1.KIND.ast_parts(config["core"])

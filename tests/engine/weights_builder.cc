@@ -80,6 +80,8 @@ Offset<fb::Network> AddNetwork(FlatBufferBuilder& b, const NetworkSpec& n) {
   const auto joints = AddAll(b, n.joints, &AddJoint);
   Offset<fb::SelfTest> self_test;
   if (n.self_test) self_test = AddSelfTest(b, *n.self_test);
+  Offset<fb::Features> features;
+  if (n.features) features = n.features(b);
   const auto start = b.StartTable();
   if (!n.without_name) b.AddOffset(fb::Network::VT_NAME, name);
   if (!n.without_prefix) b.AddOffset(fb::Network::VT_PREFIX, prefix);
@@ -88,6 +90,7 @@ Offset<fb::Network> AddNetwork(FlatBufferBuilder& b, const NetworkSpec& n) {
   b.AddOffset(fb::Network::VT_NORMALISATIONS, statistics);
   b.AddOffset(fb::Network::VT_JOINTS, joints);
   if (n.self_test) b.AddOffset(fb::Network::VT_SELF_TEST, self_test);
+  if (n.features) b.AddOffset(fb::Network::VT_FEATURES, features);
   return Offset<fb::Network>(b.EndTable(start));
 }
 

@@ -54,6 +54,8 @@ struct NetworkSpec {
   std::vector<StatisticsSpec> statistics{};
   std::vector<JointSpec> joints{};
   std::optional<SelfTestSpec> self_test{};
+  /// Null: no features.
+  std::function<flatbuffers::Offset<fb::Features>(flatbuffers::FlatBufferBuilder&)> features{};
 
   bool without_name = false, without_prefix = false, without_config = false;
 };

@@ -1,0 +1,129 @@
+#include "models/features/spec.h"
+
+#include <cmath>
+
+#include "models/config.h"
+#include "weights_generated.h"
+
+namespace gestus::features {
+namespace {
+
+// Highest numbers of PATS' joints and of OpenPose's face points.
+constexpr std::int64_t kLastJoint = 51, kLastLandmark = 69;
+
+using models::ConfigReader;
+
+double Number(ConfigReader& read, const char* field, double value, double low, double high) {
+  if (!(value >= low && value <= high))
+    read.Fail(field, std::to_string(value), std::to_string(low) + " to " + std::to_string(high));
+  return value;
+}
+
+std::vector<std::int64_t> Sources(
+    ConfigReader& read, const char* field, std::int64_t last,
+    const flatbuffers::Vector<flatbuffers::Offset<fb::Joint>>* joints) {
+  std::vector<std::int64_t> sources;
+  if (joints == nullptr) return sources;
+  for (const fb::Joint* joint : *joints)
+    sources.push_back(read.Size(field, joint->source(), 0, last));
+  return sources;
+}
+
+void ReadZsMstm(const fb::ZsMstm1Config& c, FeatureSpec* spec) {
+  spec->layout = Layout::kFrames;
+  spec->style_frames = c.frames();
+  spec->frames = c.granularity() == fb::Granularity::Segment
+                     ? std::int64_t{c.frames()} * c.context_segments()
+                     : c.frames();
+  spec->mel_bins = c.ast_content()->mel_bins();
+  spec->d_text = c.d_text();
+  spec->frame_rate = c.frame_rate();
+  spec->pose_source =
+      c.pose_source() == fb::PoseSource::Data ? PoseSource::kData : PoseSource::kNormalize;
+}
+
+void ReadLayout(const fb::Network& network, FeatureSpec* spec) {
+  switch (network.config_type()) {
+    case fb::Config::ZsMstm1Config:
+      return ReadZsMstm(*network.config_as_ZsMstm1Config(), spec);
+    case fb::Config::ZsMstm2Config: {
+      const fb::ZsMstm2Config& c = *network.config_as_ZsMstm2Config();
+      ReadZsMstm(*c.core(), spec);
+      spec->d_face = c.d_face();
+      spec->d_tags = c.d_tags();
+      return;
+    }
+    case fb::Config::AstConfig:
+      spec->layout = Layout::kFrames;
+      spec->frames = network.config_as_AstConfig()->frames();
+      spec->mel_bins = network.config_as_AstConfig()->mel_bins();
+      spec->d_text = 0;
+      return;
+    case fb::Config::Model1Config:
+      spec->layout = Layout::kWords;
+      spec->f0_length = network.config_as_Model1Config()->f0_length();
+      spec->d_text = network.config_as_Model1Config()->d_text();
+      spec->text_rows = network.config_as_Model1Config()->text_rows();
+      return;
+    case fb::Config::Model2Config:
+      spec->layout = Layout::kWindows;
+      spec->f0_length = network.config_as_Model2Config()->f0_length();
+      spec->d_text = network.config_as_Model2Config()->d_text();
+      spec->max_words = network.config_as_Model2Config()->max_words();
+      return;
+    case fb::Config::BertConfig:
+      spec->layout = Layout::kSentences;
+      spec->positions = network.config_as_BertConfig()->positions();
+      spec->classifies = network.config_as_BertConfig()->head() == fb::BertHead::Classifier;
+      return;
+    default:
+      return;
+  }
+}
+
+void ReadFields(ConfigReader& read, const fb::Features& f, FeatureSpec* spec) {
+  spec->speech = read.Enum<SpeechFeature>("speech", f.speech(), fb::SpeechFeature::MAX);
+  spec->sample_rate = static_cast<int>(read.Size("sample_rate", f.sample_rate(), 4000, 192000));
+  spec->rows = read.Enum<RowPlacement>("rows", f.rows(), fb::RowPlacement::MAX);
+  spec->pitch_sample_rate =
+      static_cast<int>(read.Size("pitch_sample_rate", f.pitch_sample_rate(), 4000, 192000));
+  spec->pitch_hop = Number(read, "pitch_hop", f.pitch_hop(), 0.001, 0.1);
+  spec->pitch_minimum = Number(read, "pitch_minimum", f.pitch_minimum(), 20, 1000);
+  spec->pitch_maximum = Number(read, "pitch_maximum", f.pitch_maximum(), 40, 2000);
+  if (!(spec->pitch_minimum < spec->pitch_maximum))
+    read.Fail("pitch_maximum", std::to_string(spec->pitch_maximum), "more than pitch_minimum");
+  spec->pitch_threshold = Number(read, "pitch_threshold", f.pitch_threshold(), 0, 1);
+  spec->pitch = read.Enum<PitchReading>("pitch", f.pitch(), fb::PitchReading::MAX);
+  spec->pitch_ends = read.Enum<PitchEnds>("pitch_ends", f.pitch_ends(), fb::PitchEnds::MAX);
+  spec->pause = Number(read, "pause", f.pause(), 0, 60);
+  spec->landmarks = Sources(read, "landmarks", kLastLandmark, f.landmarks());
+  if (f.tags() == nullptr) return;
+  for (const flatbuffers::String* tag : *f.tags()) spec->tags.push_back(tag->str());
+}
+
+}  // namespace
+
+Result<FeatureSpec> ReadFeatureSpec(const fb::Network& network) {
+  FeatureSpec spec;
+  ReadLayout(network, &spec);
+  ConfigReader read("network " + network.name()->str() + ": features");
+  if (network.features() != nullptr) ReadFields(read, *network.features(), &spec);
+  spec.joints = Sources(read, "joints", kLastJoint, network.joints());
+  // The filter bank's own rate; only an AST alone hears it.
+  if (spec.speech == SpeechFeature::kFilterBank) {
+    constexpr int kFilterBankRate = 16000;
+    constexpr double kFilterBankRows = 100;
+    spec.sample_rate = kFilterBankRate;
+    if (network.config_type() == fb::Config::AstConfig) spec.frame_rate = kFilterBankRows;
+  }
+  if (!spec.tags.empty() && static_cast<std::int64_t>(spec.tags.size()) != spec.d_tags)
+    read.Fail("tags", std::to_string(spec.tags.size()), "d_tags, " + std::to_string(spec.d_tags));
+  if (!spec.landmarks.empty() &&
+      2 * static_cast<std::int64_t>(spec.landmarks.size()) != spec.d_face)
+    read.Fail("landmarks", std::to_string(spec.landmarks.size()),
+              "half of d_face, " + std::to_string(spec.d_face));
+  if (!read.status().ok()) return read.status();
+  return spec;
+}
+
+}  // namespace gestus::features
