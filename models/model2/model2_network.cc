@@ -70,10 +70,8 @@ void Model2Network::FeedWindow(const Arrays& inputs, std::int64_t first, Session
 }
 
 Status Model2Network::RunItems(const Arrays& inputs, Items& items, Arrays* outputs) {
+  GESTUS_RETURN_IF_ERROR(CheckSameRows(inputs, "text", "f0", "words"));
   const std::int64_t words = inputs.at("f0").shape[0];
-  if (inputs.at("text").shape[0] != words)
-    return Status(Code::kBadInput, "text: " + std::to_string(inputs.at("text").shape[0]) +
-                                       " words, expected those of f0, " + std::to_string(words));
   Session& session = items.session;
   const auto channels = static_cast<std::int64_t>(c_.channels.size());
   const std::int64_t windows = (words + c_.max_words - 1) / c_.max_words;
@@ -98,9 +96,9 @@ Status Model2Network::RunItems(const Arrays& inputs, Items& items, Arrays* outpu
   }
   AddFaces(c_.channels, std::move(tokens), outputs);
   if (words > c_.max_words)
-    items.Note("f0: " + std::to_string(words) + " words ran in " + std::to_string(windows) +
-               " windows of at most " + std::to_string(c_.max_words) +
-               " that do not see one another");
+    AddNote(items.report, "f0: " + std::to_string(words) + " words ran in " +
+                              std::to_string(windows) + " windows of at most " +
+                              std::to_string(c_.max_words) + " that do not see one another");
   return {};
 }
 
