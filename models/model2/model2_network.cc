@@ -89,6 +89,10 @@ Status Model2Network::RunItems(const Arrays& inputs, Items& items, Arrays* outpu
     items.Run();
     for (std::int64_t n = 0; n < channels; ++n) {
       const std::int32_t* picked = session.Output(std::to_string(n)).i32;
+      // Where logits are not finite, Graph::Pick can choose nothing.
+      if (std::any_of(picked, picked + c_.max_out, [](std::int32_t token) { return token < 0; }))
+        return Status(Code::kNonFinite, "face: no probabilities for window " +
+                                            std::to_string(window) + ", expected finite values");
       for (std::int64_t step = 0; step < c_.max_out; ++step)
         tokens.i32[static_cast<std::size_t>((window * c_.max_out + step) * channels + n)] =
             picked[step];

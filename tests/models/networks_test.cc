@@ -317,6 +317,28 @@ TEST_P(NetworkInputTest, IsRefusedByName) {
       << outputs.status().message();
 }
 
+// Results that are not finite.
+
+TEST(Model2NonFiniteTest, NamesTheFirstWindowThatHasNothingToChooseFrom) {
+  const auto network = MakeGolden("model2_text");  // windows of three words
+  Arrays inputs;
+  inputs["f0"] = models::MakeArray({8, 5});
+  inputs["text"] = models::MakeArray({8, 6});
+  for (const float temperature : {0.0f, 1.0f}) {
+    models::RunOptions options;
+    options.sampling.temperature = temperature;
+    std::fill(inputs["text"].f32.begin(), inputs["text"].f32.end(), 0.5f);
+    EXPECT_TRUE(network->Run(inputs, options, nullptr).ok());
+    // The fourth word's projection exceeds float32, which layer norm makes NaN of.
+    std::fill_n(inputs["text"].f32.begin() + 3 * 6, 6, std::numeric_limits<float>::max());
+    const auto outputs = network->Run(inputs, options, nullptr);
+    ASSERT_FALSE(outputs.ok());
+    EXPECT_EQ(outputs.status().code(), Code::kNonFinite);
+    EXPECT_EQ(outputs.status().message(),
+              "face: no probabilities for window 1, expected finite values");
+  }
+}
+
 // Damage whose checksum fits: refused, or a network whose results are finite or an error.
 
 struct DamageCase {
