@@ -13,7 +13,6 @@
 
 namespace gestus::fb {
 struct Channel;
-
 }  // namespace gestus::fb
 
 namespace gestus::models {

@@ -12,10 +12,6 @@ void GraphNetwork::Items::Run() {
   progress.Step(options);
 }
 
-void GraphNetwork::Items::Note(const std::string& note) {
-  if (report != nullptr && !note.empty()) report->notes.push_back(note);
-}
-
 void GraphNetwork::RunWindows(const Array& input, const std::string& input_name,
                               std::int64_t length, const std::string& output_name, Items& items,
                               Arrays* outputs) {
@@ -33,7 +29,7 @@ void GraphNetwork::RunWindows(const Array& input, const std::string& input_name,
     to += width;
   }
   (*outputs)[output_name] = std::move(rows);
-  items.Note(DescribeLastWindow(input_name, total, length));
+  AddNote(items.report, DescribeLastWindow(input_name, total, length));
 }
 
 Status GraphNetwork::Init(std::shared_ptr<const WeightsFile> file, const std::string& name,
@@ -63,6 +59,7 @@ Result<std::shared_ptr<const Plan>> GraphNetwork::MakePlan(bool taps) {
 
 Result<Arrays> GraphNetwork::Run(const Arrays& inputs, const RunOptions& options,
                                  RunReport* report) {
+  if (plan_ == nullptr) return NotPlanned();
   GESTUS_RETURN_IF_ERROR(CheckOptions(options));
   GESTUS_RETURN_IF_ERROR(CheckInputs(signature_, inputs));
   std::shared_ptr<const Plan> plan = plan_;

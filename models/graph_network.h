@@ -21,7 +21,7 @@ namespace gestus::models {
 class GraphNetwork : public Network {
  public:
   const Signature& signature() const final { return signature_; }
-  std::string PlanText() const final { return plan_->ToString(); }
+  std::string PlanText() const final { return plan_ == nullptr ? "" : plan_->ToString(); }
   Result<Arrays> Run(const Arrays& inputs, const RunOptions& options, RunReport* report) final;
 
   /// Loads `network`, which has just been made empty, from its record in `file`, and plans it.
@@ -44,7 +44,6 @@ class GraphNetwork : public Network {
 
     /// Runs the session for one item, as often as the options say.
     void Run();
-    void Note(const std::string& note);
   };
 
   /// Reads the configuration and binds the tensors.

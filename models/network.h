@@ -80,15 +80,16 @@ class Network {
   /// Checks `inputs` against the signature, runs them, and returns the outputs.
   virtual Result<Arrays> Run(const Arrays& inputs, const RunOptions& options,
                              RunReport* report) = 0;
-  /// The plans of this network's graphs as text: ops, shapes, arena offsets, bytes, FLOPs.
+  /// The plans of this network's graphs as text: ops, shapes, arena offsets, bytes, FLOPs.  Empty
+  /// without a plan.
   virtual std::string PlanText() const = 0;
 };
 
 struct NetworkOptions {
   const kernels::KernelTable* kernels = nullptr;  ///< null: BestTable()
   std::uint64_t max_arena_bytes = std::uint64_t{4} << 30;
-  /// False: only kind and signature are wanted; nothing is packed, Run and PlanText are not for
-  /// use.
+  /// False: only kind and signature are wanted; nothing is packed, Run is an error and PlanText
+  /// empty.
   bool plan = true;
 };
 

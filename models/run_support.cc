@@ -39,6 +39,20 @@ Status CheckOptions(const RunOptions& options) {
   return {};
 }
 
+Status CheckSameRows(const Arrays& inputs, const std::string& name, const std::string& other,
+                     const std::string& rows) {
+  const std::int64_t found = inputs.at(name).shape[0], expected = inputs.at(other).shape[0];
+  if (found == expected) return {};
+  return Status(Code::kBadInput, name + ": " + std::to_string(found) + " " + rows +
+                                     ", expected those of " + other + ", " +
+                                     std::to_string(expected));
+}
+
+Status NotPlanned() {
+  return Status(Code::kInvalidArgument,
+                "network: made without a plan, expected NetworkOptions::plan to run it");
+}
+
 Status CheckFinite(const std::string& name, const Array& array, Code code) {
   const std::int64_t cols = array.shape.empty() ? 1 : array.shape.back();
   for (std::size_t i = 0; i < array.f32.size(); ++i) {
@@ -92,6 +106,10 @@ void CopyOut(std::int32_t* to, const ValueView& from) {
   for (std::int64_t r = 0; r < from.shape.Rows(); ++r)
     std::memcpy(to + r * from.shape.Cols(), from.i32 + r * from.row_stride,
                 cols * sizeof(std::int32_t));
+}
+
+void AddNote(RunReport* report, const std::string& note) {
+  if (report != nullptr && !note.empty()) report->notes.push_back(note);
 }
 
 void TimedRun(const RunOptions& options, RunReport* report, const std::function<void()>& run) {

@@ -19,6 +19,14 @@ Status CheckInputs(const Signature& signature, const Arrays& inputs);
 /// Repeats, threads and sampling in range.
 Status CheckOptions(const RunOptions& options);
 
+/// Array `name` has as many rows as array `other`; both are given.  `rows` says what the first
+/// dimension counts: "frames", "words".
+Status CheckSameRows(const Arrays& inputs, const std::string& name, const std::string& other,
+                     const std::string& rows);
+
+/// The error of running a network that was made with NetworkOptions::plan = false.
+Status NotPlanned();
+
 /// All values finite, or an error that names the array and the first place that is not.
 Status CheckFinite(const std::string& name, const Array& array, Code code);
 
@@ -33,6 +41,9 @@ ArraySpec Spec(const std::string& name, std::vector<std::int64_t> shape,
 void CopyIn(const ValueView& to, const float* from);
 void CopyOut(float* to, const ValueView& from);
 void CopyOut(std::int32_t* to, const ValueView& from);
+
+/// Adds a note to the report; nothing where there is no report or the note is empty.
+void AddNote(RunReport* report, const std::string& note);
 
 /// Calls `run` as often as the options say and notes each time in the report.
 void TimedRun(const RunOptions& options, RunReport* report, const std::function<void()>& run);

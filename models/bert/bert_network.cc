@@ -63,7 +63,7 @@ class BertNetwork final : public Network {
     return c_.head == BertHead::kClassifier ? "BERT with a classifier" : "BERT";
   }
   const Signature& signature() const override { return signature_; }
-  std::string PlanText() const override { return longest_->ToString(); }
+  std::string PlanText() const override { return longest_ == nullptr ? "" : longest_->ToString(); }
   Result<Arrays> Run(const Arrays& inputs, const RunOptions& options, RunReport* report) override;
 
  private:
@@ -189,6 +189,7 @@ Result<Session*> BertNetwork::SessionFor(std::int64_t length, const RunOptions& 
 
 Result<Arrays> BertNetwork::Run(const Arrays& inputs, const RunOptions& options,
                                 RunReport* report) {
+  if (longest_ == nullptr) return NotPlanned();
   GESTUS_RETURN_IF_ERROR(CheckOptions(options));
   GESTUS_RETURN_IF_ERROR(CheckInputs(signature_, inputs));
   const Array& ids = inputs.at("ids");
@@ -229,10 +230,10 @@ Result<Arrays> BertNetwork::Run(const Arrays& inputs, const RunOptions& options,
                     static_cast<std::size_t>(n * c_.d_model) * sizeof(float));
       }
     }
-    if (report != nullptr && !classifies && s.length > c_.MaxPieces())
-      report->notes.push_back("ids: row " + std::to_string(row) + " has " +
-                              std::to_string(s.length) + " pieces; they ran in chunks of at most " +
-                              std::to_string(c_.MaxPieces()) + " that do not see one another");
+    if (!classifies && s.length > c_.MaxPieces())
+      AddNote(report, "ids: row " + std::to_string(row) + " has " + std::to_string(s.length) +
+                          " pieces; they ran in chunks of at most " +
+                          std::to_string(c_.MaxPieces()) + " that do not see one another");
     progress.Step(options);
   }
   const char* name = classifies ? "probabilities" : "hidden";

@@ -74,9 +74,7 @@ Result<Arrays> RunNetwork(const Arguments& arguments, const Arrays& inputs, Setu
 }  // namespace
 
 Status RunInfer(const Arguments& arguments) {
-  // A file that cannot be read is told by ReadInputs, after the weights.
-  const Result<std::vector<std::string>> arrays = ListNpz(arguments.input);
-  Result<Setup> setup = OpenNetwork(arguments, arrays.ok() ? *arrays : std::vector<std::string>{});
+  Result<Setup> setup = OpenNetwork(arguments);
   if (!setup.ok()) return setup.status();
   models::RunReport report;
   if (const std::string note = IgnoredIsaNote(); arguments.isa.empty() && !note.empty()) {

@@ -204,8 +204,8 @@ Result<NpzContents> ReadBare(const InputFile& file, const std::vector<ArraySpec>
     if (spec.required && ++required == 1) only = &spec;
   }
   if (required != 1) {
-    return Bad("is a single .npy array, expected an .npz file with " + std::to_string(required) +
-               " arrays");
+    return Bad("is a single .npy array, expected an .npz file" +
+               (required == 0 ? "" : " with " + std::to_string(required) + " arrays"));
   }
   const ByteReader read = [&file](void* data, std::size_t size) -> Result<std::size_t> {
     const ssize_t n = ::read(file.fd.get(), data, size);

@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "models/cli/machine.h"
+#include "models/cli/npz.h"
 #include "weights_generated.h"
 
 namespace gestus::cli {
@@ -52,7 +53,7 @@ Result<std::string> ChooseNetwork(const std::shared_ptr<const WeightsFile>& weig
 
 }  // namespace
 
-Result<Setup> OpenNetwork(const Arguments& arguments, const std::vector<std::string>& arrays) {
+Result<Setup> OpenNetwork(const Arguments& arguments, std::vector<std::string> arrays) {
   const Result<const kernels::KernelTable*> kernels = ChooseKernels(arguments.isa);
   if (!kernels.ok()) return kernels.status();
   Setup setup;
@@ -61,7 +62,12 @@ Result<Setup> OpenNetwork(const Arguments& arguments, const std::vector<std::str
   if (!weights.ok()) return weights.status();
   setup.weights = *std::move(weights);
   std::string name = arguments.network;
-  if (name.empty() && !arrays.empty() && setup.weights->root().networks()->size() > 1) {
+  if (name.empty() && setup.weights->root().networks()->size() > 1) {
+    if (arrays.empty()) {
+      Result<std::vector<std::string>> listed = ListNpz(arguments.input);
+      if (!listed.ok()) return listed.status();
+      arrays = *std::move(listed);
+    }
     Result<std::string> chosen = ChooseNetwork(setup.weights, arrays);
     if (!chosen.ok()) return chosen.status();
     name = *std::move(chosen);

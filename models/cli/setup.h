@@ -22,9 +22,9 @@ struct Setup {
 };
 
 /// Opens the weights and builds the network that the command line names.  Where it names none and
-/// the file holds several, it is the one that takes most of `arrays`, the names of what is to be
-/// run.
-Result<Setup> OpenNetwork(const Arguments& arguments, const std::vector<std::string>& arrays = {});
+/// the file holds several, it is the one that takes most of `arrays`, or, when that is empty, of
+/// the arrays of the input, which is opened in this case alone.
+Result<Setup> OpenNetwork(const Arguments& arguments, std::vector<std::string> arrays = {});
 
 /// What a user of untrained weights must know.
 constexpr const char* kUntrained = "UNTRAINED weights: output is noise";

@@ -78,11 +78,9 @@ class Model1Network final : public GraphNetwork {
   }
 
   Status RunItems(const Arrays& inputs, Items& items, Arrays* outputs) override {
+    GESTUS_RETURN_IF_ERROR(CheckSameRows(inputs, "text", "f0", "words"));
     const Array &f0 = inputs.at("f0"), &text = inputs.at("text");
     const std::int64_t words = f0.shape[0];
-    if (text.shape[0] != words)
-      return Status(Code::kBadInput, "text: " + std::to_string(text.shape[0]) +
-                                         " words, expected those of f0, " + std::to_string(words));
     const auto channels = static_cast<std::int64_t>(c_.channels.size());
     Array tokens = MakeArray({words, c_.out_length, channels}, DType::kI32);
     items.progress.total = static_cast<std::size_t>(words);

@@ -70,10 +70,8 @@ void Model2Network::FeedWindow(const Arrays& inputs, std::int64_t first, Session
 }
 
 Status Model2Network::RunItems(const Arrays& inputs, Items& items, Arrays* outputs) {
+  GESTUS_RETURN_IF_ERROR(CheckSameRows(inputs, "text", "f0", "words"));
   const std::int64_t words = inputs.at("f0").shape[0];
-  if (inputs.at("text").shape[0] != words)
-    return Status(Code::kBadInput, "text: " + std::to_string(inputs.at("text").shape[0]) +
-                                       " words, expected those of f0, " + std::to_string(words));
   Session& session = items.session;
   const auto channels = static_cast<std::int64_t>(c_.channels.size());
   const std::int64_t windows = (words + c_.max_words - 1) / c_.max_words;
@@ -91,6 +89,10 @@ Status Model2Network::RunItems(const Arrays& inputs, Items& items, Arrays* outpu
     items.Run();
     for (std::int64_t n = 0; n < channels; ++n) {
       const std::int32_t* picked = session.Output(std::to_string(n)).i32;
+      // Where logits are not finite, Graph::Pick can choose nothing.
+      if (std::any_of(picked, picked + c_.max_out, [](std::int32_t token) { return token < 0; }))
+        return Status(Code::kNonFinite, "face: no probabilities for window " +
+                                            std::to_string(window) + ", expected finite values");
       for (std::int64_t step = 0; step < c_.max_out; ++step)
         tokens.i32[static_cast<std::size_t>((window * c_.max_out + step) * channels + n)] =
             picked[step];
@@ -98,9 +100,9 @@ Status Model2Network::RunItems(const Arrays& inputs, Items& items, Arrays* outpu
   }
   AddFaces(c_.channels, std::move(tokens), outputs);
   if (words > c_.max_words)
-    items.Note("f0: " + std::to_string(words) + " words ran in " + std::to_string(windows) +
-               " windows of at most " + std::to_string(c_.max_words) +
-               " that do not see one another");
+    AddNote(items.report, "f0: " + std::to_string(words) + " words ran in " +
+                              std::to_string(windows) + " windows of at most " +
+                              std::to_string(c_.max_words) + " that do not see one another");
   return {};
 }
 

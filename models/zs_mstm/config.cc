@@ -5,6 +5,7 @@
 
 #include "models/blocks/weights.h"
 #include "models/config.h"
+#include "models/self_test.h"
 #include "weights_generated.h"
 
 namespace gestus::models {
@@ -126,6 +127,17 @@ void BindZsMstm(Binder& binder, const ZsMstmConfig& c, ZsMstmWeights* w) {
     const Binder::Scope scope(binder, name);
     BindGenerator(binder, c, columns, "embedding", !c.dense_shared, generator);
   }
+}
+
+Status LoadZsMstm(const WeightsFile& file, const fb::Network& network, ZsMstmConfig* c,
+                  ZsMstmWeights* w) {
+  Result<ZsMstmConfig> config = ReadZsMstmConfig(network);
+  if (!config.ok()) return config.status().In(file.path());
+  *c = *std::move(config);
+  Binder binder(file, network.prefix()->str());
+  BindZsMstm(binder, *c, w);
+  UseSelfTest(binder, network);
+  return binder.Finish();
 }
 
 }  // namespace gestus::models

@@ -83,6 +83,9 @@ struct ZsMstmWeights {
 /// 1.0 or 2.0, as the network's record says.
 Result<ZsMstmConfig> ReadZsMstmConfig(const fb::Network& network);
 void BindZsMstm(Binder& binder, const ZsMstmConfig& c, ZsMstmWeights* w);
+/// Both for `network` of `file`, of which nothing may be left over; errors begin with the path.
+Status LoadZsMstm(const WeightsFile& file, const fb::Network& network, ZsMstmConfig* c,
+                  ZsMstmWeights* w);
 
 }  // namespace gestus::models
 

@@ -5,7 +5,6 @@
 
 #include "engine/thread_pool.h"
 #include "models/run_support.h"
-#include "models/self_test.h"
 #include "models/zs_mstm/networks.h"
 #include "weights_generated.h"
 
@@ -24,18 +23,10 @@ Result<std::shared_ptr<const ZsMstm>> ZsMstm::Make(std::shared_ptr<const Weights
                              network->config_as_ZsMstm2Config() == nullptr))
     return Status(Code::kBadWeights,
                   file->path() + ": no ZS-MSTM network" + (name.empty() ? "" : " called " + name));
-  Result<ZsMstmConfig> config = ReadZsMstmConfig(*network);
-  if (!config.ok()) return config.status().In(file->path());
-
   std::shared_ptr<ZsMstm> model(new ZsMstm);
   model->file_ = file;
-  model->config_ = *std::move(config);
-  Binder binder(*file, network->prefix()->str());
-  BindZsMstm(binder, model->config_, &model->weights_);
-  UseSelfTest(binder, *network);
-  GESTUS_RETURN_IF_ERROR(binder.Finish());
+  GESTUS_RETURN_IF_ERROR(LoadZsMstm(*file, *network, &model->config_, &model->weights_));
 
-  if (!options.planned) return std::shared_ptr<const ZsMstm>(std::move(model));
   const kernels::KernelTable& table =
       options.kernels != nullptr ? *options.kernels : kernels::BestTable();
   WeightCache cache(table, file);

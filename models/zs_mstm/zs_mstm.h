@@ -27,7 +27,6 @@ class ZsMstmAgent;
 struct ZsMstmOptions {
   const kernels::KernelTable* kernels = nullptr;  ///< null: BestTable()
   PlanOptions plan;
-  bool planned = true;  ///< false: only the configuration is wanted
 };
 
 class ZsMstm {

@@ -48,19 +48,20 @@ Signature MakeSignature(const ZsMstmConfig& c) {
 
 class ZsMstmNetwork final : public Network {
  public:
-  ZsMstmNetwork(std::shared_ptr<const ZsMstm> model, std::string name,
+  /// `model` is null where no plan is wanted.
+  ZsMstmNetwork(ZsMstmConfig config, std::shared_ptr<const ZsMstm> model, std::string name,
                 const NetworkOptions& options)
-      : model_(std::move(model)),
+      : c_(std::move(config)),
+        model_(std::move(model)),
         name_(std::move(name)),
         options_(options),
-        signature_(MakeSignature(model_->config())) {}
+        signature_(MakeSignature(c_)) {}
 
-  const char* kind() const override {
-    return model_->config().HasFace() ? "ZS-MSTM 2.0" : "ZS-MSTM 1.0";
-  }
+  const char* kind() const override { return c_.HasFace() ? "ZS-MSTM 2.0" : "ZS-MSTM 1.0"; }
   const Signature& signature() const override { return signature_; }
 
   std::string PlanText() const override {
+    if (model_ == nullptr) return "";
     return "style encoder\n" + model_->style_plan()->ToString() + "generator\n" +
            model_->generator_plan()->ToString();
   }
@@ -74,6 +75,7 @@ class ZsMstmNetwork final : public Network {
   Status RunGenerator(const Arrays& inputs, const RunOptions& options, RunReport* report,
                       ZsMstmAgent& agent, Progress& progress, Arrays* outputs) const;
 
+  ZsMstmConfig c_;
   std::shared_ptr<const ZsMstm> model_;
   std::string name_;
   NetworkOptions options_;
@@ -94,11 +96,7 @@ Result<bool> Together(const Arrays& inputs, const std::vector<const char*>& name
       return Status(Code::kBadInput, std::string(Has(inputs, name) ? first : name) +
                                          ": missing, expected beside " +
                                          (Has(inputs, name) ? name : first));
-    if (Frames(inputs, name) != Frames(inputs, first))
-      return Status(Code::kBadInput, std::string(name) + ": " +
-                                         std::to_string(Frames(inputs, name)) +
-                                         " frames, expected those of " + first + ", " +
-                                         std::to_string(Frames(inputs, first)));
+    if (Has(inputs, name)) GESTUS_RETURN_IF_ERROR(CheckSameRows(inputs, name, first, "frames"));
   }
   return Has(inputs, first);
 }
@@ -126,10 +124,6 @@ Status CheckTags(const ZsMstmConfig& c, const Arrays& inputs) {
                                      std::to_string(segments));
 }
 
-void Note(RunReport* report, const std::string& note) {
-  if (report != nullptr && !note.empty()) report->notes.push_back(note);
-}
-
 Result<std::unique_ptr<ZsMstmAgent>> ZsMstmNetwork::NewAgent(const RunOptions& options) const {
   std::shared_ptr<const ZsMstm> model = model_;
   if (options.taps) {
@@ -150,44 +144,43 @@ Status ZsMstmNetwork::RunStyle(const Arrays& inputs, const RunOptions& options, 
     agent.SetStyle(inputs.at("style").f32.data());
     return {};
   }
-  const ZsMstmConfig& c = model_->config();
   const std::int64_t total = Frames(inputs, "style_speech");
   std::vector<std::pair<const char*, Array>> streams;
-  for (const char* name : ClipStreams(c))
-    streams.emplace_back(name, MakeArray({c.frames, inputs.at(name).shape[1]}));
-  const float* tags = c.d_tags > 0 ? inputs.at("style_tags").f32.data() : nullptr;
-  for (const Window& w : Windows(total, c.frames)) {
+  for (const char* name : ClipStreams(c_))
+    streams.emplace_back(name, MakeArray({c_.frames, inputs.at(name).shape[1]}));
+  const float* tags = c_.d_tags > 0 ? inputs.at("style_tags").f32.data() : nullptr;
+  for (const Window& w : Windows(total, c_.frames)) {
     for (auto& [name, to] : streams)
-      CopyWindow(inputs.at(name).f32.data(), total, to.shape[1], w.begin, c.frames, to.f32.data());
+      CopyWindow(inputs.at(name).f32.data(), total, to.shape[1], w.begin, c_.frames, to.f32.data());
     const auto data = [&](std::size_t i) {
       return i < streams.size() ? streams[i].second.f32.data() : nullptr;
     };
     agent.AddStyleSegment({data(0), data(1), data(2), data(3), tags});
-    if (tags != nullptr) tags += c.d_tags;
+    if (tags != nullptr) tags += c_.d_tags;
     progress.Step(options);
   }
-  Note(report, DescribeLastWindow("style clip", total, c.frames));
+  AddNote(report, DescribeLastWindow("style clip", total, c_.frames));
   return {};
 }
 
 Status ZsMstmNetwork::RunGenerator(const Arrays& inputs, const RunOptions& options,
                                    RunReport* report, ZsMstmAgent& agent, Progress& progress,
                                    Arrays* outputs) const {
-  const ZsMstmConfig& c = model_->config();
-  const std::int64_t total = Frames(inputs, "speech"), length = c.WindowFrames();
-  Array speech = MakeArray({length, c.ast_content.mel_bins}), text = MakeArray({length, c.d_text});
-  Array pose = MakeArray({length, c.d_pose}), face = MakeArray({length, c.d_face});
+  const std::int64_t total = Frames(inputs, "speech"), length = c_.WindowFrames();
+  Array speech = MakeArray({length, c_.ast_content.mel_bins}),
+        text = MakeArray({length, c_.d_text});
+  Array pose = MakeArray({length, c_.d_pose}), face = MakeArray({length, c_.d_face});
   std::vector<std::pair<const Array*, Array*>> streams;  // of a window, and whole
-  (*outputs)["pose"] = MakeArray({total, c.d_pose});
+  (*outputs)["pose"] = MakeArray({total, c_.d_pose});
   streams.emplace_back(&pose, &(*outputs)["pose"]);
-  if (c.HasFace()) {
-    (*outputs)["face"] = MakeArray({total, c.d_face});
+  if (c_.HasFace()) {
+    (*outputs)["face"] = MakeArray({total, c_.d_face});
     streams.emplace_back(&face, &(*outputs)["face"]);
   }
   for (const Window& w : Windows(total, length)) {
     CopyWindow(inputs.at("speech").f32.data(), total, speech.shape[1], w.begin, length,
                speech.f32.data());
-    CopyWindow(inputs.at("text").f32.data(), total, c.d_text, w.begin, length, text.f32.data());
+    CopyWindow(inputs.at("text").f32.data(), total, c_.d_text, w.begin, length, text.f32.data());
     TimedRun(options, report, [&] {
       agent.Generate(speech.f32.data(), text.f32.data(), pose.f32.data(), face.f32.data());
     });
@@ -199,7 +192,7 @@ Status ZsMstmNetwork::RunGenerator(const Arrays& inputs, const RunOptions& optio
     }
     progress.Step(options);
   }
-  Note(report, DescribeLastWindow("speech", total, length));
+  AddNote(report, DescribeLastWindow("speech", total, length));
   for (const auto& [name, array] : *outputs)
     GESTUS_RETURN_IF_ERROR(CheckFinite(name, array, Code::kNonFinite));
   return {};
@@ -207,33 +200,33 @@ Status ZsMstmNetwork::RunGenerator(const Arrays& inputs, const RunOptions& optio
 
 Result<Arrays> ZsMstmNetwork::Run(const Arrays& inputs, const RunOptions& options,
                                   RunReport* report) {
+  if (model_ == nullptr) return NotPlanned();
   GESTUS_RETURN_IF_ERROR(CheckOptions(options));
   GESTUS_RETURN_IF_ERROR(CheckInputs(signature_, inputs));
   const Result<bool> speaks = Together(inputs, {"speech", "text"});
   if (!speaks.ok()) return speaks.status();
-  const ZsMstmConfig& c = model_->config();
-  const Result<bool> clip = Together(inputs, ClipStreams(c));
+  const Result<bool> clip = Together(inputs, ClipStreams(c_));
   if (!clip.ok()) return clip.status();
   if (!*clip && !Has(inputs, "style"))
     return Status(Code::kBadInput, "style: missing, expected style, or style_speech, style_text" +
-                                       std::string(c.HasFace() ? ", style_face, style_tags" : "") +
+                                       std::string(c_.HasFace() ? ", style_face, style_tags" : "") +
                                        " and style_pose");
-  GESTUS_RETURN_IF_ERROR(CheckTags(c, inputs));
+  GESTUS_RETURN_IF_ERROR(CheckTags(c_, inputs));
   if (*clip && Has(inputs, "style"))
     return Status(Code::kBadInput, "style: given twice, as a style and as a clip");
 
   Result<std::unique_ptr<ZsMstmAgent>> agent = NewAgent(options);
   if (!agent.ok()) return agent.status();
   Progress progress;
-  progress.total = Windows(Frames(inputs, "style_speech"), c.frames).size() +
-                   Windows(Frames(inputs, "speech"), c.WindowFrames()).size();
+  progress.total = Windows(Frames(inputs, "style_speech"), c_.frames).size() +
+                   Windows(Frames(inputs, "speech"), c_.WindowFrames()).size();
   if (report != nullptr) {
     report->frames = static_cast<std::size_t>(Frames(inputs, "speech"));
-    report->frame_rate = c.frame_rate;
+    report->frame_rate = c_.frame_rate;
   }
   GESTUS_RETURN_IF_ERROR(RunStyle(inputs, options, report, **agent, progress));
   Arrays outputs;
-  Array style = MakeArray({c.StyleWidth()});
+  Array style = MakeArray({c_.StyleWidth()});
   std::memcpy(style.f32.data(), (*agent)->style(), style.f32.size() * sizeof(float));
   GESTUS_RETURN_IF_ERROR(CheckFinite("style", style, Code::kNonFinite));
   outputs["style"] = std::move(style);
@@ -252,14 +245,20 @@ Result<Arrays> ZsMstmNetwork::Run(const Arrays& inputs, const RunOptions& option
 Result<std::unique_ptr<Network>> MakeZsMstmNetwork(std::shared_ptr<const WeightsFile> file,
                                                    const std::string& name,
                                                    const NetworkOptions& options) {
+  if (!options.plan) {
+    ZsMstmConfig config;
+    ZsMstmWeights weights;
+    GESTUS_RETURN_IF_ERROR(LoadZsMstm(*file, *file->FindNetwork(name), &config, &weights));
+    return std::unique_ptr<Network>(
+        std::make_unique<ZsMstmNetwork>(std::move(config), nullptr, name, options));
+  }
   ZsMstmOptions model_options;
   model_options.kernels = options.kernels;
   model_options.plan.max_arena_bytes = options.max_arena_bytes;
-  model_options.planned = options.plan;
   auto model = ZsMstm::Make(std::move(file), name, model_options);
   if (!model.ok()) return model.status();
   return std::unique_ptr<Network>(
-      std::make_unique<ZsMstmNetwork>(*std::move(model), name, options));
+      std::make_unique<ZsMstmNetwork>((*model)->config(), *model, name, options));
 }
 
 }  // namespace gestus::models

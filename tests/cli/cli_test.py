@@ -211,6 +211,17 @@ class InfoTest(CliTest):
                 self.assertGreater(len(network["configuration"]), 3, name)
                 self.assertTrue(network["inputs"] and network["outputs"], name)
 
+    def test_pose_source(self):
+        """The reading that has no golden, since it changes no number."""
+        file = weights_file.read(self.WEIGHTS)
+        for source in ("Data", "Normalize"):
+            file.networks[0]["config"]["pose_source"] = source
+            weights_file.write(self.path("source.fb"), file.networks, file.tensors,
+                               file.provenance)
+            info = json.loads(self.good("info", "source.fb", "--json"))
+            self.assertEqual(info["networks"][0]["configuration"]["pose_source"], source)
+            self.assertRegex(self.good("info", "source.fb"), rf"pose_source +{source}\n")
+
     def test_check(self):
         self.assertIn("passed", self.good("check", self.WEIGHTS))
         report = json.loads(self.good("check", self.WEIGHTS, "--json", "--threads", "2"))
@@ -299,6 +310,15 @@ class BundleTest(CliTest):
         given = self.save("given.npz", {"music": np.zeros((3, 3), np.float32)})
         self.bad(self.bundle, given, says=("--network", "acts"))
         self.bad(self.bundle, given, "--network", "acts", says=("ids",))
+
+    def test_input_that_cannot_be_listed(self):
+        self.bad(self.bundle, "none.npz", says=("none.npz", "No such file"))
+        self.bad(self.bundle, self.write("text.npz", b"no archive"), says=("text.npz",))
+        with np.load(golden("ast_cls.npz")) as arrays:
+            np.save(self.path("bare.npy"), arrays["speech"])
+        self.bad(self.bundle, "bare.npy",
+                 says=("bare.npy: is a single .npy array, expected an .npz file",))
+        self.good(self.bundle, "bare.npy", "--network", "ast", "-o", "out.npz")
 
     def test_style_and_self_tests(self):
         self.good("style", self.bundle, "input.npz", "-o", "a.style")
