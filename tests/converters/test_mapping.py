@@ -256,3 +256,10 @@ def test_verify_takes_the_map_and_keeps_what_accompanies_the_weights(tmp_path, m
     monkeypatch.setattr(verify, "run_engine", engine)
     assert main(["verify", file, "--checkpoint", str(tmp_path / "m.pt"), *given]) == 0
     assert "hidden" in capfd.readouterr().out
+
+    def poorer(*given):
+        return {key: x for key, x in engine(*given).items() if key != "hidden"}
+
+    monkeypatch.setattr(verify, "run_engine", poorer)
+    assert main(["verify", file]) == 1
+    assert "hidden: not among what infer-cli gave, expected (" in capfd.readouterr().out
