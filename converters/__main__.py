@@ -2,6 +2,7 @@
 """The command line: export, random, example, bundle, verify, inspect."""
 
 import argparse
+import io
 import json
 import os
 import sys
@@ -13,6 +14,8 @@ from .errors import ConvertError
 def main(arguments=None):
     options = _parser().parse_args(arguments)
     try:
+        if getattr(options, "seed", 0) < 0:
+            raise ConvertError(f"--seed: {options.seed}, expected 0 or more")
         return options.run(options) or 0
     except ConvertError as error:
         message = str(error)
@@ -57,7 +60,7 @@ def _parser():
 
     random = commands.add_parser("random", help="weights file with random weights")
     _network_options(random)
-    random.add_argument("--seed", type=int, default=0)
+    _seed_option(random)
     random.add_argument("-o", "--output", required=True, metavar="WEIGHTS.fb")
     random.add_argument("--checkpoint-out", metavar="MODEL.pt",
                         help="also save the weights with torch.save")
@@ -77,7 +80,7 @@ def _parser():
     verify.add_argument("--ast", metavar="AST.pth", help="as for export")
     _map_option(verify)
     verify.add_argument("--infer-cli", default="infer-cli", metavar="PATH")
-    verify.add_argument("--seed", type=int, default=0)
+    _seed_option(verify)
     verify.add_argument("--tolerance", type=float, default=1e-4,
                         help="largest relative error of any value (default %(default)s)")
     verify.set_defaults(run=_verify)
@@ -86,7 +89,7 @@ def _parser():
     example.add_argument("weights", metavar="WEIGHTS.fb")
     example.add_argument("-o", "--output", required=True, metavar="INPUT.npz")
     example.add_argument("--network", metavar="NAME", help="of a file that holds several")
-    example.add_argument("--seed", type=int, default=0)
+    _seed_option(example)
     example.set_defaults(run=_example)
 
     inspect = commands.add_parser("inspect", help="what a checkpoint or a weights file holds")
@@ -98,6 +101,10 @@ def _parser():
 def _map_option(parser):
     parser.add_argument("--map", metavar="MAP.json",
                         help="which tensors of the checkpoint are ours (docs/converters.md)")
+
+
+def _seed_option(parser):
+    parser.add_argument("--seed", type=int, default=0, help="0 or more (default %(default)s)")
 
 
 def _network_options(parser):
@@ -162,8 +169,6 @@ def _export(options):
 def _random(options):
     from .export import write
     from .random_weights import random_weights, save_checkpoint
-    if options.seed < 0:
-        raise ConvertError(f"--seed: {options.seed}, expected 0 or more")
     network = _network(options) if options.config else networks.demo_network(options.kind)
     tensors = random_weights(network, options.seed)
     provenance = {"trained": False, "licence": "as gestus",
@@ -189,16 +194,15 @@ def _verify(options):
 def _example(options):
     import numpy as np
     from . import weights_file
-    if options.seed < 0:
-        raise ConvertError(f"--seed: {options.seed}, expected 0 or more")
     file = weights_file.read(options.weights)
     found = [n for n in file.networks if options.network in (None, n["name"])]
     if len(found) != 1:
         raise ConvertError(f"{options.weights}: expected --network with one of "
                            + ", ".join(n["name"] for n in file.networks))
     inputs = networks.random_inputs(found[0], options.seed)
-    with open(options.output, "wb") as output:
-        np.savez(output, **inputs)
+    content = io.BytesIO()
+    np.savez(content, **inputs)
+    weights_file.replace_file(options.output, [content.getbuffer()])
     _done([f"{name}: {array.shape} {array.dtype}" for name, array in inputs.items()],
           options.output)
 

@@ -17,6 +17,7 @@ SPAN = re.compile(r"`([^`\n]+)`")
 FILE = re.compile(r"^(?:[\w.-]+/)+[\w-]+(?:\.inl)?\.(?:cc|h|py|md|txt|fbs|cmake|svg)$")
 LINK = re.compile(r"\]\((?!https?:)([^)#\s]+)\)")
 EXCERPT = re.compile(r"<!-- from: (\S+) -->\n```\w*\n(.*?)```", re.S)
+OPTION = r"--[a-z][a-z-]*"
 PLACEHOLDER = re.compile(r"@@\w+@@")
 # Folders that appear only when something has been built or run.
 MADE = ("build/", "out/")
@@ -55,9 +56,9 @@ def faults_of_commands(root, text):
                 yield f"./run {command}: unknown"
     arguments = root / "models/cli/args.cc"
     if arguments.is_file():
-        options = set(re.findall(r"--[a-z]+", arguments.read_text(encoding="utf-8")))
+        options = set(re.findall(OPTION, arguments.read_text(encoding="utf-8")))
         for line in re.findall(r"^.*infer-cli .*$", text, re.M):
-            for option in re.findall(r"(?<=\s)--[a-z-]+", line.split("infer-cli ", 1)[1]):
+            for option in re.findall(r"(?<=\s)" + OPTION, line.split("infer-cli ", 1)[1]):
                 if option not in options | {"--help"}:
                     yield f"infer-cli {option}: unknown option"
 
@@ -87,18 +88,22 @@ def self_test():
     """Each planted mistake must be found, and nothing else."""
     page = ("`a/b.cc` `a/b.cc:Known` [b](../a/b.cc)\n<!-- from: a/b.cc -->\n```cpp\nint Known;\n```\n"
             "`a/none.cc` `a/b.cc:Unknown` [c](../a/none.cc) @@X@@ ./run nonsense\n"
-            "<!-- from: a/b.cc -->\n```cpp\nint Other;\n```\n```\ninfer-cli w.fb --nonsense\n```\n")
+            "<!-- from: a/b.cc -->\n```cpp\nint Other;\n```\n```\ninfer-cli w.fb --nonsense\n"
+            "infer-cli w.fb --top-k 3\ninfer-cli w.fb --top 3\n```\n")
     with tempfile.TemporaryDirectory() as folder:
         root = pathlib.Path(folder)
         for name in ("a", "docs", "models/cli"):
             (root / name).mkdir(parents=True)
         (root / "a/b.cc").write_text("int Known;\n", encoding="utf-8")
         (root / "run").write_text("test\n", encoding="utf-8")
-        (root / "models/cli/args.cc").write_text("--threads\n", encoding="utf-8")
+        (root / "models/cli/args.cc").write_text("--threads\n--top-k\n", encoding="utf-8")
         (root / "docs/page.md").write_text(page, encoding="utf-8")
         found = list(faults(root))
     print("\n".join(found))
-    return 0 if len(found) == 7 else 1
+    planted = ("int Other;", "`a/none.cc`", "`a/b.cc:Unknown`", "../a/none.cc", "@@X@@", "./run nonsense",
+               "infer-cli --nonsense:", "infer-cli --top:")
+    whole = len(found) == len(planted) and all(any(p in f for f in found) for p in planted)
+    return 0 if whole else 1
 
 
 def main():

@@ -134,6 +134,34 @@ def test_random_then_export_gives_the_same_tensors(tmp_path, tiny_config):
         np.testing.assert_array_equal(again.tensors[name], x)
 
 
+def test_example_is_whole_or_not_there(checkpoint, tiny_config, tmp_path, monkeypatch, capfd):
+    _, weights = export(checkpoint, tiny_config)
+    output, network = tmp_path / "input.npz", weights_file.read(weights).networks[0]
+    assert main(["example", weights, "-o", str(output), "--seed", "3"]) == 0
+    first = output.read_bytes()
+    with np.load(output) as arrays:
+        want = networks.random_inputs(network, 3)
+        assert set(arrays.files) == set(want)
+        for name, x in want.items():
+            np.testing.assert_array_equal(arrays[name], x)
+
+    def fail(*_):
+        raise OSError(28, "No space left on device", str(output))
+
+    before = sorted(os.listdir(tmp_path))
+    monkeypatch.setattr(weights_file.os, "fsync", fail)
+    assert main(["example", weights, "-o", str(output), "--seed", "4"]) == 2
+    assert "No space left" in capfd.readouterr().err
+    assert output.read_bytes() == first and sorted(os.listdir(tmp_path)) == before
+
+
+@pytest.mark.parametrize("command", [["random", "-o", "x.fb"], ["verify", "x.fb"],
+                                     ["example", "x.fb", "-o", "x.npz"]])
+def test_seeds_below_zero(command, capfd):
+    assert main([*command, "--seed", "-1"]) == 2
+    assert capfd.readouterr().err == "converters: --seed: -1, expected 0 or more\n"
+
+
 def test_inspect(checkpoint, tiny_config, capfd):
     _, output = export(checkpoint, tiny_config)
     assert main(["inspect", output]) == main(["inspect", str(checkpoint)]) == 0

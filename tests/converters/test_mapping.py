@@ -8,39 +8,24 @@ import pytest
 
 torch = pytest.importorskip("torch")
 
-from converters import mapping, networks, weights_file  # noqa: E402
+from conftest import same, weights  # noqa: E402
+from converters import mapping, weights_file  # noqa: E402
 from converters.__main__ import main  # noqa: E402
 from converters.checkpoint import Checkpoint  # noqa: E402
 from converters.errors import ConvertError  # noqa: E402
-from converters.random_weights import random_weights, save_checkpoint  # noqa: E402
+from converters.random_weights import save_checkpoint  # noqa: E402
 
 CLASSIFIER = {"frames": 3, "d_in": 4, "hidden": 5, "layers": 2}
 AUTOENCODER = {"length": 5, "hidden": 3}
 
 
 @pytest.fixture
-def export(tmp_path, capfd):
-    def export(path, kind, config, entries, *options):
-        output = tmp_path / "out.fb"
-        (tmp_path / "config.json").write_text(json.dumps(config))
+def export(tmp_path, export):
+    """conftest's, with the entries of a map after the configuration."""
+    def with_map(path, kind, config, entries, *options):
         (tmp_path / "map.json").write_text(json.dumps(entries))
-        code = main(["export", str(path), "--kind", kind, "--config",
-                     str(tmp_path / "config.json"), "-o", str(output), "--no-self-test", "--map",
-                     str(tmp_path / "map.json"), *options])
-        said = capfd.readouterr()
-        tensors = weights_file.read(str(output)).tensors if code == 0 else None
-        return code, tensors, said.out + said.err
-    return export
-
-
-def same(tensors, want):
-    assert list(tensors) == list(want)
-    for key, x in want.items():
-        np.testing.assert_array_equal(tensors[key], x)
-
-
-def weights(kind, config):
-    return random_weights(networks.complete(kind, {"config": config}), 1)
+        return export(path, kind, config, "--map", tmp_path / "map.json", *options)
+    return with_map
 
 
 def test_placeholders_transpose_join_and_a_shared_source(tmp_path, export):
@@ -256,3 +241,10 @@ def test_verify_takes_the_map_and_keeps_what_accompanies_the_weights(tmp_path, m
     monkeypatch.setattr(verify, "run_engine", engine)
     assert main(["verify", file, "--checkpoint", str(tmp_path / "m.pt"), *given]) == 0
     assert "hidden" in capfd.readouterr().out
+
+    def poorer(*given):
+        return {key: x for key, x in engine(*given).items() if key != "hidden"}
+
+    monkeypatch.setattr(verify, "run_engine", poorer)
+    assert main(["verify", file]) == 1
+    assert "hidden: not among what infer-cli gave, expected (" in capfd.readouterr().out

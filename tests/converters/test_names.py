@@ -8,7 +8,8 @@ import pytest
 
 torch = pytest.importorskip("torch")
 
-from converters import goldens, networks, weights_file  # noqa: E402
+from conftest import same, weights  # noqa: E402
+from converters import goldens  # noqa: E402
 from converters.__main__ import main  # noqa: E402
 from converters.errors import ConvertError  # noqa: E402
 from converters.names import AST, BERT, DISTILBERT, canonical  # noqa: E402
@@ -22,10 +23,6 @@ THEIRS = {  # of DistilBERT, by ours
     "attention.self.value": "attention.v_lin", "attention.output.dense": "attention.out_lin",
     "attention.output.LayerNorm": "sa_layer_norm", "intermediate.dense": "ffn.lin1",
     "output.dense": "ffn.lin2", "output.LayerNorm": "output_layer_norm"}
-
-
-def weights(kind, config, seed=1):
-    return random_weights(networks.complete(kind, {"config": config}), seed)
 
 
 def distil_name(key):
@@ -61,26 +58,6 @@ def hf_ast_names(tensors):
             found[key] = x
     return {key if key.startswith("classifier.") else "audio_spectrogram_transformer." + key: x
             for key, x in found.items()}
-
-
-@pytest.fixture
-def export(tmp_path, capfd):
-    """Runs `export`; gives the exit code, the tensors (if any) and what was said."""
-    def export(path, kind, config, *options):
-        file, output = tmp_path / "config.json", tmp_path / "out.fb"
-        file.write_text(json.dumps(config))
-        code = main(["export", str(path), "--kind", kind, "--config", str(file), "-o", str(output),
-                     "--no-self-test", *map(str, options)])
-        said = capfd.readouterr()
-        tensors = weights_file.read(str(output)).tensors if code == 0 else None
-        return code, tensors, said.out + said.err
-    return export
-
-
-def same(tensors, want):
-    assert list(tensors) == list(want)
-    for key, x in want.items():
-        np.testing.assert_array_equal(tensors[key], x)
 
 
 @pytest.mark.parametrize("prefix", ["", "bert.", "module.bert."])

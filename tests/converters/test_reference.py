@@ -151,6 +151,8 @@ def test_compare_finds_a_difference():
     got = {"pose": np.array([2, 2, 2.1], np.float32), "tap/a": np.ones((2, 2), np.float32)}
     assert [(n, round(e, 3)) for n, _, e in verify.compare(got, want)] == [("tap/a", 0.0),
                                                                          ("pose", 0.05)]
+    missing = verify.compare({"pose": want["pose"]}, want)
+    assert missing == [("tap/a", (2, 2), float("inf")), ("pose", (3,), 0.0)]
     assert verify.relative_error(np.ones(3), np.ones(4)) == float("inf")
     assert np.isnan(verify.relative_error(np.array([np.nan]), np.ones(1)))
     whole = np.array([1000, 2], np.int32)
