@@ -37,6 +37,19 @@ find_package(Threads REQUIRED)
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(nlohmann_json 3.11 REQUIRED)
 
+# libsndfile 1.2 reads FLAC, OGG and MP3 in models/audio, where it is there; WAV needs no library.
+option(GESTUS_SNDFILE "Read more sound files than WAV, with libsndfile where it is found" ON)
+set(GESTUS_SNDFILE_LIBRARY "")
+if(GESTUS_SNDFILE AND NOT CMAKE_CROSSCOMPILING)
+  find_path(GESTUS_SNDFILE_INCLUDE sndfile.h)
+  find_library(GESTUS_SNDFILE_FOUND sndfile)
+  if(GESTUS_SNDFILE_INCLUDE AND GESTUS_SNDFILE_FOUND)
+    set(GESTUS_SNDFILE_LIBRARY ${GESTUS_SNDFILE_FOUND})
+  else()
+    message(STATUS "No libsndfile: sound files are WAV only")
+  endif()
+endif()
+
 # libzip reads and writes .npz, CLI11 parses the command line.
 if(GESTUS_BUILD_CLI OR GESTUS_BUILD_TESTS)
   find_package(PkgConfig)

@@ -36,6 +36,7 @@ INSIDE = re.compile(r"kernels/(isa/|.*\.inl\.h)")
 PROBE = "bench/peak_probe.cc"
 LIBRARIES = {"xsimd": {"kernels"}, "Eigen": {"bench", "models/audio"}, "unsupported": {"models/audio"},
              "nlohmann": {"models/io"}, "zip.h": {"models/cli", "tests"},
+             "sndfile.h": {"models/audio", "tests"},
              "CLI": {"models/cli"}, "utf8proc.h": {"models/text"}}
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', re.M)
 
