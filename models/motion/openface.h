@@ -15,7 +15,7 @@ namespace gestus::motion {
 
 struct OpenFaceOptions {
   /// Columns that must be there; if none are named, those of AUnn_r and pose_Rx, _Ry, _Rz that are.
-  std::vector<std::string> columns;
+  std::vector<std::string> columns = {};
   double frame_rate =
       24;  ///< for files whose timestamps do not tell it; the thesis' videos have 24
   std::int64_t max_frames = kMaxFrames;

@@ -36,7 +36,7 @@ enum class NeckColumns {
 
 /// What the weights file says of poses.
 struct PoseLayout {
-  std::vector<std::int32_t> joints;  ///< PATS' joint, 0 to 51, of each joint of the network
+  std::vector<std::int32_t> joints = {};  ///< PATS' joint, 0 to 51, of each joint of the network
   PoseSource source = PoseSource::kNormalize;
   NeckColumns neck = NeckColumns::kPosition;
 };
