@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The command line: export, random, example, bundle, verify, inspect."""
+"""The command line: export, random, example, bundle, pats, verify, inspect."""
 
 import argparse
 import io
@@ -91,6 +91,18 @@ def _parser():
     example.add_argument("--network", metavar="NAME", help="of a file that holds several")
     _seed_option(example)
     example.set_defaults(run=_example)
+
+    pats = commands.add_parser("pats", help="intervals of PATS -> an input for infer-cli")
+    pats.add_argument("intervals", nargs="+", metavar="INTERVAL.h5")
+    pats.add_argument("-o", "--output", required=True, metavar="CLIP.npz")
+    pats.add_argument("--joints", default="0-10", metavar="LIST",
+                      help="PATS' joints of the network, such as 0-6,10 (default %(default)s)")
+    pats.add_argument("--source", choices=("normalize", "data"), default="normalize",
+                      help="PATS' array of poses (default %(default)s)")
+    pats.add_argument("--align", choices=("stride", "time"), default="stride",
+                      help="rows of speech by the stride of PATS' loader, or by time "
+                           "(default %(default)s)")
+    pats.set_defaults(run=_pats)
 
     inspect = commands.add_parser("inspect", help="what a checkpoint or a weights file holds")
     inspect.add_argument("file")
@@ -204,6 +216,18 @@ def _example(options):
     np.savez(content, **inputs)
     weights_file.replace_file(options.output, [content.getbuffer()])
     _done([f"{name}: {array.shape} {array.dtype}" for name, array in inputs.items()],
+          options.output)
+
+
+def _pats(options):
+    import numpy as np
+    from . import pats
+    arrays, notes = pats.convert(options.intervals, pats.parse_joints(options.joints),
+                                 options.source, options.align)
+    with open(options.output, "wb") as output:
+        np.savez(output, **arrays)
+    _done([*("note: " + note for note in notes),
+           *(f"{name}: {array.shape} {array.dtype}" for name, array in arrays.items())],
           options.output)
 
 
