@@ -111,6 +111,23 @@ const char* const kMillisecondList =
     R"({"words": [{"text": "Hello", "start": 250, "end": 650, "confidence": 0.97},
  {"text": "you.", "start": 730, "end": 1022, "confidence": 0.99}]})";
 
+// As youtube-transcript-api gives them; they overlap.
+const char* const kPhrases = R"([{"text": "so much", "start": 1.0, "duration": 3.0},
+ {"text": "more", "start": 2.0, "duration": 1.5}])";
+
+// A tool has taken the blanks off the tokens.
+const char* const kBareTokens =
+    R"({"transcription": [{"offsets": {"from": 0, "to": 900}, "text": "What are you",
+ "timestamps": {}, "tokens": [{"text": "What", "offsets": {"from": 0, "to": 300}},
+ {"text": "are", "offsets": {"from": 300, "to": 500}}, {"text": "you", "offsets": {"from": 500, "to": 900}},
+ {"text": "<|endoftext|>", "offsets": {}}]}]})";
+
+// No blanks at all: ideographs and kana are words, what follows them belongs to them.
+const char* const kChinese =
+    R"({"transcription": [{"offsets": {"from": 0, "to": 900}, "text": "\u5B66\u4E60\u3002",
+ "tokens": [{"text": "\u5B66", "offsets": {"from": 0, "to": 300}}, {"text": "\u4E60", "offsets": {"from": 300, "to": 800}},
+ {"text": "\u3002", "offsets": {"from": 800, "to": 900}}]}]})";
+
 const char* const kCtm =
     ";; a comment\n"
     "talk A 0.400 0.400 deep 0.99\n"
@@ -261,6 +278,12 @@ std::vector<Sample> MakeSamples() {
       {"MFA JSON", kMfaJson, "MFA JSON", "this 0.30-0.90, is 0.90-1.40"},
       {"Vosk", kVosk, "JSON word list", "one 0.50-0.90, two 1.00-1.50"},
       {"milliseconds", kMillisecondList, "JSON word list", "Hello 0.25-0.65, you. 0.73-1.02"},
+      {"phrases", kPhrases, "JSON list of phrases",
+       "so 1.00-1.33*, much 1.33-2.00*, more 2.00-3.50"},
+      {"whisper.cpp, bare tokens", kBareTokens, "whisper.cpp JSON",
+       "What 0.00-0.30, are 0.30-0.50, you 0.50-0.90"},
+      {"whisper.cpp, Chinese", kChinese, "whisper.cpp JSON",
+       "\u5B66 0.00-0.30, \u4E60\u3002 0.30-0.80"},
       {"CTM", kCtm, "CTM", "deep 0.40-0.80, learning 0.80-1.30, is 1.50-1.70"},
       {"CTM of numbers", kCtmNumbers, "CTM", "deep 0.40-0.80, 20 0.80-1.30"},
       {"long TextGrid", kTextGridLong, "Praat TextGrid",
