@@ -35,16 +35,19 @@ bool DividesSentence(std::string_view text) {
 }  // namespace
 
 std::vector<double> ShareByLength(const std::vector<std::string_view>& parts, Span span) {
-  double total = 0;
-  for (const std::string_view part : parts) total += static_cast<double>(CountCharacters(part));
+  // A dash takes no time.
+  const auto length = [](std::string_view part) {
+    return IsOnlyPunctuation(part) ? 0 : static_cast<double>(CountCharacters(part));
+  };
+  double total = 0, so_far = 0;
+  for (const std::string_view part : parts) total += length(part);
   std::vector<double> ends;
-  double so_far = 0;
   for (const std::string_view part : parts) {
-    so_far += static_cast<double>(CountCharacters(part));
-    ends.push_back(span.start + (span.end - span.start) * (so_far / total));
+    so_far += length(part);
+    // The last end is free of rounding, so that it does not pass the start of the next phrase.
+    const bool done = so_far >= total;
+    ends.push_back(done ? span.end : span.start + (span.end - span.start) * (so_far / total));
   }
-  // Free of rounding where the next phrase begins.
-  if (!ends.empty()) ends.back() = span.end;
   return ends;
 }
 
@@ -62,6 +65,7 @@ void Draft::Add(std::string_view text, Span span, bool joins) {
   const std::vector<std::string_view> parts = SplitAtSpace(text, kMaxWords + 1);
   too_many_ |= words_.size() + parts.size() > kMaxWords;
   if (too_many_) return;
+  NoteUnit(text, span);
   const std::vector<double> ends = ShareByLength(parts, span);
   for (std::size_t i = 0; i < parts.size(); ++i) {
     const Span part = {i == 0 ? span.start : ends[i - 1], ends[i]};

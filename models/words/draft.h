@@ -54,6 +54,7 @@ class Draft {
   };
 
   void Append(std::string_view text, Span span, bool timed);
+  void NoteUnit(std::string_view text, Span span);
   void RepairTexts();
   void DropSounds();
   void AttachPunctuation();
@@ -72,6 +73,9 @@ class Draft {
   std::vector<std::string> notes_;
   std::vector<Entry> words_;
   std::vector<Span> segments_ = {Span{}};  // the first is what comes before any segment
+  // Of the phrases as the file has them, for GuessUnit().
+  bool whole_times_ = true;
+  double phrase_seconds_ = 0, phrase_characters_ = 0;
   bool escaped_ = false;
   bool too_many_ = false;
 };

@@ -40,17 +40,18 @@ struct Cases {
 
 }  // namespace
 
-void Draft::GuessUnit() {
-  double seconds = 0, characters = 0;
-  for (const Entry& word : words_) {
-    for (const double time : {word.span.start, word.span.end}) {
-      if (Known(time) && time != std::floor(time)) return;
-    }
-    if (!(word.span.end > word.span.start)) continue;
-    seconds += word.span.end - word.span.start;
-    characters += static_cast<double>(CountCharacters(word.text));
+void Draft::NoteUnit(std::string_view text, Span span) {
+  for (const double time : {span.start, span.end}) {
+    if (Known(time) && time != std::floor(time)) whole_times_ = false;
   }
-  if (seconds == 0 || characters / seconds > kSlowestSpeech) return;
+  if (!(span.end > span.start)) return;
+  phrase_seconds_ += span.end - span.start;
+  phrase_characters_ += static_cast<double>(CountCharacters(text));
+}
+
+void Draft::GuessUnit() {
+  if (!whole_times_ || phrase_seconds_ == 0) return;
+  if (phrase_characters_ / phrase_seconds_ > kSlowestSpeech) return;
   for (Entry& word : words_) word.span = {word.span.start / 1000, word.span.end / 1000};
   AddNote("the times are whole numbers and were taken for milliseconds");
 }

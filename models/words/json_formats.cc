@@ -1,5 +1,6 @@
 #include "models/words/json_formats.h"
 
+#include <cmath>
 #include <utility>
 
 #include "models/words/formats.h"
@@ -59,8 +60,10 @@ double TimeOf(const Json* value) {
 }
 
 Span SpanOf(const Json& object) {
-  return {TimeOf(FirstMember(object, {"start", "start_time", "startTime", "startOffset"})),
-          TimeOf(FirstMember(object, {"end", "end_time", "endTime", "endOffset"}))};
+  Span span = {TimeOf(FirstMember(object, {"start", "start_time", "startTime", "startOffset"})),
+               TimeOf(FirstMember(object, {"end", "end_time", "endTime", "endOffset"}))};
+  if (std::isnan(span.end)) span.end = span.start + TimeOf(Member(object, "duration"));
+  return span;
 }
 
 Result<std::string_view> TextOf(const Json& object, std::initializer_list<const char*> names,

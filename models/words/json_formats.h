@@ -19,7 +19,7 @@ const Json* ArrayMember(const Json& object, const char* name);
 const Json* FirstMember(const Json& object, std::initializer_list<const char*> names);
 /// A number of seconds, a string that ParseTime() knows, or {"seconds", "nanos"}; else kNoTime.
 double TimeOf(const Json* value);
-/// The start and the end of `object` under any of the names in use.
+/// The start and the end (or duration) of `object` under any of the names in use.
 Span SpanOf(const Json& object);
 /// The string under the first of `names` that is there; `where` ("segments[3]") is for the error.
 Result<std::string_view> TextOf(const Json& object, std::initializer_list<const char*> names,

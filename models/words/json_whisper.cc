@@ -35,9 +35,14 @@ struct Piece {
   std::size_t segment;  // its index in `segments`
 };
 
+struct Segment {
+  Span span;
+  bool one_word;  // no blank in its text: a script that has none, or really one word
+};
+
 struct Pieces {
   std::vector<Piece> pieces;
-  std::vector<Span> segments;
+  std::vector<Segment> segments;
   Spacing spacing;
 
   void Add(const Piece& piece) {
@@ -74,14 +79,14 @@ void AddPieces(const Pieces& collected, Draft* draft) {
     if (piece.token) {
       // Scripts without blanks: the tokens of a segment belong together but for ideographs.
       joins |= !collected.spacing.spaced() && piece.segment == segment && !piece.text.empty() &&
-               !IsIdeograph(DecodeAt(piece.text, 0).value);
+               collected.segments[segment].one_word && !IsIdeograph(DecodeAt(piece.text, 0).value);
     } else {
       joins = joins && std::fabs(piece.span.start - end) < kSameWord;
     }
     if (piece.segment != segment) {
       segment = piece.segment;
       // A word that goes on over the border stays in the segment in which it began.
-      if (!joins) draft->BeginSegment(collected.segments[segment]);
+      if (!joins) draft->BeginSegment(collected.segments[segment].span);
     }
     draft->Add(piece.text, piece.span, joins);
     blank = piece.text.empty() || IsSpace(DecodeBefore(piece.text, piece.text.size()).value);
@@ -138,7 +143,7 @@ Status ReadWhisperCpp(const Json& root, Draft* draft) {
     const auto text = TextOf(segments[i], {"text"}, where);
     if (!text.ok()) return text.status();
     const Span span = WhisperCppSpan(segments[i]);
-    collected.segments.push_back(span);
+    collected.segments.push_back({span, SplitAtSpace(*text, 2).size() < 2});
     if (const Json* tokens = ArrayMember(segments[i], "tokens")) {
       const Result<bool> timed = CollectTokens(*tokens, where + ".tokens", &collected);
       if (!timed.ok()) return timed.status();
@@ -163,6 +168,7 @@ Status ReadSegments(const Json& root, Draft* draft) {
   const Json& segments = *SegmentsOf(root);
   const Survey survey = SurveySegments(segments);
   const Json* flat = ArrayMember(root, "word_segments");
+  if (root.is_array()) draft->set_format("JSON list of phrases");
   if (survey.scores || flat != nullptr) draft->set_format("WhisperX JSON");
   // OpenAI's service lists the words beside the segments.
   if (flat == nullptr) flat = ArrayMember(root, "words");
@@ -180,7 +186,9 @@ Status ReadSegments(const Json& root, Draft* draft) {
     }
     const auto text = TextOf(segments[i], {"text"}, where);
     if (!text.ok()) return text.status();
-    draft->Add(*text, span);
+    // Captions of YouTube stay while the next ones are spoken.
+    const double next = i + 1 < segments.size() ? SpanOf(segments[i + 1]).start : kNoTime;
+    draft->Add(*text, {span.start, next > span.start && next < span.end ? next : span.end});
   }
   return Status();
 }

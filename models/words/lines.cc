@@ -50,6 +50,8 @@ std::optional<CtmEntry> ParseCtmEntry(std::string_view line) {
   CtmEntry ctm;
   ctm.recording = TakeField(&line);
   ctm.channel = TakeField(&line);
+  // "deep 0.4 0.8 0.93 0.97" is a word with scores.
+  if (ctm.channel.find('.') != std::string_view::npos) return std::nullopt;
   double duration = 0;
   if (!ParseTime(TakeField(&line), &ctm.entry.span.start)) return std::nullopt;
   if (!ParseTime(TakeField(&line), &duration)) return std::nullopt;
@@ -67,8 +69,9 @@ bool LooksLikeCtm(std::string_view text) {
     const std::string_view line = TakeLine(&text);
     if (IsIgnored(line)) continue;
     const auto ctm = ParseCtmEntry(line);
-    if (!ctm) return false;
+    if (!ctm && lines == 0) return false;
     ++lines;
+    if (!ctm) continue;  // the reader will say so
     double start = 0, end = 0;
     could_be_times = could_be_times && ParseTime(ctm->recording, &start) &&
                      ParseTime(ctm->channel, &end) && start <= end;

@@ -175,32 +175,40 @@ void DropRepetitions(std::vector<Cue>* cues, Draft* draft) {
   draft->AddNote("the captions roll; " + Count(repeating.size(), "line") + " shown again left out");
 }
 
-// The words of a cue, between the times that stand within it.
-void AddWords(const Cue& cue, Draft* draft) {
-  struct Part {
-    double start;
-    std::string_view text;
-    bool first;  // of its line
-  };
-  std::vector<Part> parts;
-  double time = cue.span.start;
+// The text of a cue from one time within it to the next.
+struct Stretch {
+  double start;
+  std::string text;
+};
+
+std::vector<Stretch> StretchesOf(const Cue& cue) {
+  std::vector<Stretch> stretches = {{cue.span.start, {}}};
   for (const Line& line : cue.lines) {
-    bool first = true;
+    stretches.back().text += ' ';
     for (const CuePart& part : line.parts) {
-      // Times that leave the cue or go back are taken for the nearest that do not.
-      if (part.start > time) time = std::min(part.start, std::max(time, cue.span.end));
-      if (!TrimSpace(part.text).empty()) parts.push_back({time, part.text, first});
-      first = false;
+      if (!std::isnan(part.start)) {
+        // Times that leave the cue or go back are taken for the nearest that do not.
+        const double before = stretches.back().start;
+        const double time = std::max(before, std::min(part.start, cue.span.end));
+        stretches.push_back({time, {}});
+      }
+      stretches.back().text += part.text;
     }
   }
+  std::erase_if(stretches, [](const Stretch& s) { return TrimSpace(s.text).empty(); });
+  return stretches;
+}
+
+void AddWords(const Cue& cue, Draft* draft) {
+  const std::vector<Stretch> stretches = StretchesOf(cue);
   bool blank = true;
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    const double end = i + 1 < parts.size() ? parts[i + 1].start : cue.span.end;
-    const std::string_view text = parts[i].text;
-    const char32_t begin = DecodeAt(text, 0).value;
+  for (std::size_t i = 0; i < stretches.size(); ++i) {
+    const std::string& text = stretches[i].text;
+    const double end = i + 1 < stretches.size() ? stretches[i + 1].start : cue.span.end;
+    const char32_t first = DecodeAt(text, 0).value;
     // "gram<00:01.000>mar" is one word in two parts.
-    const bool joins = i > 0 && !parts[i].first && !blank && !IsSpace(begin) && !IsIdeograph(begin);
-    draft->Add(text, {parts[i].start, end}, joins);
+    const bool joins = !blank && !IsSpace(first) && !IsIdeograph(first);
+    draft->Add(text, {stretches[i].start, end}, joins);
     blank = IsSpace(DecodeBefore(text, text.size()).value);
   }
 }
