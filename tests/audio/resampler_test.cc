@@ -21,6 +21,11 @@ struct Rates {
   int from, to;
 };
 
+std::string Name(const Rates& rates) {
+  return std::to_string(rates.from) + "_to_" + std::to_string(rates.to);
+}
+void PrintTo(const Rates& rates, std::ostream* out) { *out << Name(rates); }
+
 // Ratios with filters for every phase, and such with a line between two.
 const Rates kRates[] = {{44100, 16000}, {48000, 16000},  {16000, 44100},  {44100, 48000},
                         {8000, 16000},  {96000, 44100},  {22050, 16000},  {11025, 16000},
@@ -84,9 +89,8 @@ TEST_P(ResamplerTest, RemovesWhatTheLowerRateCannotHold) {
   EXPECT_LT(worst, 1e-5);
 }
 
-INSTANTIATE_TEST_SUITE_P(Rates, ResamplerTest, testing::ValuesIn(kRates), [](const auto& test) {
-  return std::to_string(test.param.from) + "_to_" + std::to_string(test.param.to);
-});
+INSTANTIATE_TEST_SUITE_P(Rates, ResamplerTest, testing::ValuesIn(kRates),
+                         [](const auto& test) { return Name(test.param); });
 
 TEST(ResamplerTest, EqualRatesChangeNothing) {
   const std::vector<float> samples = Noise(1000);

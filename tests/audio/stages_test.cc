@@ -25,6 +25,8 @@ struct Case {
   std::function<std::size_t(std::size_t)> rows;  // by the definition
 };
 
+void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
+
 template <class T>
 std::unique_ptr<Stage> Own(Result<T> stage) {
   EXPECT_TRUE(stage.ok()) << stage.status().message();

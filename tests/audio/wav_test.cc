@@ -202,7 +202,8 @@ TEST(WavTest, DoesNotBelieveSizes) {
   // A long form whose size is missing, and one that says more than there is.
   EXPECT_EQ(Read(Wav({.form = "RF64", .data_size = 0xFFFFFFFF}, data)).mono, kRamp);
   ByteVector sizes, ds64;
-  Put(&sizes, ~std::uint64_t{0}, 8), Put(&sizes, ~std::uint64_t{0}, 8), Put(&sizes, 0, 12);
+  Put(&sizes, ~std::uint64_t{0}, 8), Put(&sizes, ~std::uint64_t{0}, 8), Put(&sizes, 0, 8),
+      Put(&sizes, 0, 4);
   PutChunk(&ds64, "ds64", sizes);
   const Sound sound =
       Read(Wav({.form = "RF64", .data_size = 0xFFFFFFFF, .before_fmt = ds64}, data));
