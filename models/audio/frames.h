@@ -31,8 +31,8 @@ struct PatsSegments {
 
 struct RowPlan {
   RowPlacement placement = RowPlacement::kPats;
-  RowTimes times;         ///< for kExact
-  PatsSegments segments;  ///< for kPats
+  RowTimes times = {};         ///< for kExact
+  PatsSegments segments = {};  ///< for kPats
   int frames_per_second = 15;
 };
 

@@ -49,7 +49,9 @@ void AudioSource::NoteNotFinite(std::uint64_t count) {
     notes_.emplace_back();
   }
   not_finite_ += count;
-  notes_[not_finite_note_] = Count(not_finite_, "sample") + " not a finite number, taken as 0";
+  notes_[not_finite_note_] =
+      Count(not_finite_, "sample") +
+      (not_finite_ == 1 ? " is not a finite number" : " are not finite numbers") + ", taken as 0";
 }
 
 bool HaveSndfile() { return kHaveSndfile; }

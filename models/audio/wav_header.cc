@@ -57,7 +57,8 @@ Status ParseFmt(const std::uint8_t* p, std::size_t n, WavHeader* header,
   const std::uint32_t rate = U32(p + 4);
   if (channels == 0) return Bad("fmt: 0 channels, expected at least 1");
   if (rate == 0 || rate > static_cast<std::uint32_t>(std::numeric_limits<int>::max())) {
-    return Bad("fmt: a sample rate of " + std::to_string(rate) + " Hz, expected more than 0");
+    return Bad("fmt: a sample rate of " + std::to_string(rate) + " Hz, expected " +
+               (rate == 0 ? "more than 0" : "1 to 2147483647"));
   }
   header->channels = static_cast<int>(channels);
   header->sample_rate = static_cast<int>(rate);
@@ -187,7 +188,7 @@ void Walk::SetData(std::uint64_t begin, std::uint32_t said) {
   const bool never_set = size == 0 && riff_size_ != there + begin - kChunkHeader;
   const bool wrapped = there >= size && there - size > kUnknownSize;
   if (there > 0 && (never_set || wrapped || size > there)) {
-    notes_->push_back("data: says " + Count(size, "byte") + ", but " + std::to_string(there) +
+    notes_->push_back("data: says " + Count(size, "byte") + ", but " + Grouped(there) +
                       " follow; read to the end of the file");
     header_.data_bytes = there;
   }

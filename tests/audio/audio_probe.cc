@@ -2,13 +2,15 @@
 // command with its arguments between tabs:
 //
 //   read FILE OUT             a sound file to mono float32
+//   head FILE OUT             only opens it
 //   log_mel_512 IN OUT RATE   the others take mono float32 and write rows of float32
 //   log_mel_400 IN OUT
 //   fbank IN OUT MEAN
 //   resample IN OUT FROM TO
 //
-// The answer is one line: "ok", after `read` with rate, channels, frames and the notes between
-// tabs, or "error: <sentence>".  The last line is the largest resident size in KiB.  OUT may be
+// The answer is one line: "ok", after `read` and `head` with rate, channels, frames and the notes
+// between tabs, or "error: <sentence>".  The last line is the largest resident size in KiB.  OUT
+// may be
 // "-".
 #include <sys/resource.h>
 
@@ -45,13 +47,13 @@ double Number(const std::vector<std::string>& fields, std::size_t i) {
 }
 
 // Reads in pieces and keeps none of them, so that memory stays flat.
-Result<std::string> Read(const std::string& path, const std::string& to) {
+Result<std::string> Read(const std::string& path, const std::string& to, bool head) {
   auto source = audio::OpenAudio(path);
   if (!source.ok()) return source.status();
   std::ofstream out;
   if (to != "-") out.open(to, std::ios::binary);
   std::vector<float> piece(10007);
-  for (;;) {
+  while (!head) {
     const Result<std::size_t> got = (*source)->Read(piece.data(), piece.size());
     if (!got.ok()) return got.status();
     if (*got == 0) break;
@@ -82,7 +84,8 @@ Result<std::string> Do(const std::vector<std::string>& fields) {
   const auto integer = [&](std::size_t i) { return static_cast<int>(Number(fields, i)); };
   Status status(Code::kInvalidArgument, "unknown command");
   if (fields.size() < 3) return status;
-  if (fields[0] == "read") return Read(fields[1], fields[2]);
+  if (fields[0] == "read") return Read(fields[1], fields[2], false);
+  if (fields[0] == "head") return Read(fields[1], fields[2], true);
   if (fields[0] == "log_mel_512")
     status = Run(audio::LogMel::Make(audio::PatsLogMel512(integer(3))), fields);
   if (fields[0] == "log_mel_400") status = Run(audio::LogMel::Make(audio::PatsLogMel400()), fields);

@@ -1,7 +1,7 @@
 // Runs a model in its steady state with every allocation, lock, mapping, write and throw of the
 // process intercepted: there must be none.
 //
-//   steady_state WEIGHTS|every-op THREADS REPEATS [--plant]
+//   steady_state WEIGHTS|every-op|audio THREADS REPEATS [--plant]
 //
 // The runs lie between two getppid() calls, so that a tracer can tell the system calls among them.
 // --plant allocates once in the middle, to show that the check can fail.
@@ -19,6 +19,9 @@
 #include <new>
 #include <vector>
 
+#include "models/audio/fbank.h"
+#include "models/audio/log_mel.h"
+#include "models/audio/resampler.h"
 #include "models/zs_mstm/zs_mstm.h"
 #include "tests/engine/every_op.h"
 
@@ -153,14 +156,49 @@ Subject EveryOpOf(int threads) {
   return [model, session] { session->Run(); };
 }
 
+// The stages of the audio front end, piece by piece and from recording to recording.
+Subject Audio() {
+  using namespace audio;  // NOLINT: as above
+  struct Stages {
+    Resampler resampler;
+    LogMel log_mel;
+    Fbank fbank;
+    std::vector<float> samples, resampled, rows;
+    int pieces = 0;
+  };
+  auto resampler = Resampler::Make(44100, 16000);
+  auto log_mel = LogMel::Make(PatsLogMel512(44100));
+  auto fbank = Fbank::Make();
+  if (!resampler.ok() || !log_mel.ok() || !fbank.ok()) return Fail(resampler.status());
+  auto s = std::make_shared<Stages>(
+      Stages{*std::move(resampler), *std::move(log_mel), *std::move(fbank), {}, {}, {}});
+  s->samples.assign(3000, 0.25f);
+  s->resampled.resize(s->resampler.MaxRows(3000) + s->resampler.MaxRowsAtFinish());
+  s->rows.resize(128 * (s->log_mel.MaxRows(3000) + s->fbank.MaxRows(s->resampled.size()) +
+                        s->log_mel.MaxRowsAtFinish()));
+  return [s] {
+    const bool end = ++s->pieces % 10 == 0;
+    s->log_mel.Push(s->samples.data(), s->samples.size(), s->rows.data());
+    if (end) s->log_mel.Finish(s->rows.data());
+    std::size_t n = s->resampler.Push(s->samples.data(), s->samples.size(), s->resampled.data());
+    if (end) n += s->resampler.Finish(s->resampled.data() + n);
+    s->fbank.Push(s->resampled.data(), n, s->rows.data());
+    if (end) s->fbank.Finish(s->rows.data());
+  };
+}
+
+Subject SubjectOf(const char* name, int threads) {
+  if (std::strcmp(name, "every-op") == 0) return EveryOpOf(threads);
+  return std::strcmp(name, "audio") == 0 ? Audio() : ZsMstmOf(name, threads);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   if (argc < 4) return 2;
   const int threads = std::atoi(argv[2]), repeats = std::atoi(argv[3]);
   const bool plant = argc > 4 && std::strcmp(argv[4], "--plant") == 0;
-  const Subject run =
-      std::strcmp(argv[1], "every-op") == 0 ? EveryOpOf(threads) : ZsMstmOf(argv[1], threads);
+  const Subject run = SubjectOf(argv[1], threads);
   if (!run) return 2;
 
   for (int i = 0; i < 10; ++i) run();
