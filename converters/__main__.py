@@ -45,10 +45,7 @@ def _parser():
     export.add_argument("--keep-epsilon", action="store_true",
                         help="take the configuration's LayerNorm epsilons although the "
                              "checkpoint's layers had others")
-    export.add_argument("--vocabulary", metavar="VOCAB.txt",
-                        help="tokens of a bert, one a line, to travel with the weights")
-    export.add_argument("--labels", metavar="LABELS.txt",
-                        help="names of a bert's classes, one a line, or DialogTag's label_map.txt")
+    _bert_options(export)
     export.add_argument("--report", metavar="FILE",
                         help="what became of every tensor, as text or (.json) as JSON")
     export.add_argument("--no-self-test", action="store_true")
@@ -60,6 +57,7 @@ def _parser():
 
     random = commands.add_parser("random", help="weights file with random weights")
     _network_options(random)
+    _bert_options(random)
     _seed_option(random)
     random.add_argument("-o", "--output", required=True, metavar="WEIGHTS.fb")
     random.add_argument("--checkpoint-out", metavar="MODEL.pt",
@@ -110,6 +108,13 @@ def _parser():
     return parser
 
 
+def _bert_options(parser):
+    parser.add_argument("--vocabulary", metavar="VOCAB.txt",
+                        help="tokens of a bert, one a line, to travel with the weights")
+    parser.add_argument("--labels", metavar="LABELS.txt",
+                        help="names of a bert's classes, one a line, or DialogTag's label_map.txt")
+
+
 def _map_option(parser):
     parser.add_argument("--map", metavar="MAP.json",
                         help="which tensors of the checkpoint are ours (docs/converters.md)")
@@ -136,6 +141,19 @@ def _network(options, **more):
         raise ConvertError(f"{options.config or options.kind}: {error}") from None
 
 
+def _bert_network(options):
+    """The network, and the tensors that travel with it."""
+    from . import vocabulary
+    if options.kind != "bert" and (options.vocabulary or options.labels):
+        raise ConvertError(f"--vocabulary and --labels: kind {options.kind}, expected bert")
+    labels = {"labels": vocabulary.read_labels(options.labels)} if options.labels else {}
+    network = _network(options, **labels)
+    if not options.vocabulary:
+        return network, {}
+    tokens = network["config"]["tokens"]
+    return network, {"vocabulary": vocabulary.read_vocabulary(options.vocabulary, tokens)}
+
+
 def _config(path):
     with open(path, encoding="utf-8") as file:
         try:
@@ -148,21 +166,14 @@ def _config(path):
 
 
 def _export(options):
-    from . import mapping, vocabulary
+    from . import mapping
     from .checkpoint import read_checkpoint
     from .export import export
     from .report import Report
-    if options.kind != "bert" and (options.vocabulary or options.labels):
-        raise ConvertError(f"--vocabulary and --labels: kind {options.kind}, expected bert")
     provenance = {"trained": options.trained, "trained_on": options.trained_on,
                   "trained_at": options.trained_at, "recipe": options.recipe,
                   "licence": options.licence}
-    labels = {"labels": vocabulary.read_labels(options.labels)} if options.labels else {}
-    network = _network(options, **labels)
-    extra = {}
-    if options.vocabulary:
-        tokens = network["config"]["tokens"]
-        extra["vocabulary"] = vocabulary.read_vocabulary(options.vocabulary, tokens)
+    network, extra = _bert_network(options)
     checkpoint = read_checkpoint(options.checkpoint)
     report = Report(checkpoint, network)
     try:
@@ -181,8 +192,11 @@ def _export(options):
 def _random(options):
     from .export import write
     from .random_weights import random_weights, save_checkpoint
-    network = _network(options) if options.config else networks.demo_network(options.kind)
-    tensors = random_weights(network, options.seed)
+    if options.config or options.vocabulary or options.labels:
+        network, extra = _bert_network(options)
+    else:
+        network, extra = networks.demo_network(options.kind), {}
+    tensors = random_weights(network, options.seed) | extra
     provenance = {"trained": False, "licence": "as gestus",
                   "recipe": f"random, seed {options.seed}; untrained, the output is noise"}
     report = []

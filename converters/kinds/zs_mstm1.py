@@ -141,7 +141,8 @@ class ZsMstm1(Kind):
                 "style_pose": streams.rows("pose", style)}
 
     def demo(self):
-        return {"normalisations": [ast.SPEECH, POSE]}
+        # POSE has the neck at 0.
+        return {"normalisations": [ast.SPEECH, POSE], "features": {"neck": "Zero"}}
 
     def joints(self, config):
         return pats_joints(config["d_pose"])

@@ -71,7 +71,8 @@ class ZsMstm2(Kind):
         return inputs
 
     def demo(self):
-        return {"normalisations": [*zs_mstm1.KIND.demo()["normalisations"], FACE]}
+        demo = zs_mstm1.KIND.demo()
+        return {**demo, "normalisations": [*demo["normalisations"], FACE]}
 
     def joints(self, config):
         return zs_mstm1.pats_joints(config["core"]["d_pose"])

@@ -8,9 +8,10 @@ namespace {
 
 constexpr const char* kFooter = R"(
 Examples:
-  infer-cli weights.fb speech.npz                       motion into speech.out.npz
-  infer-cli weights.fb speech.npz --style anna.style -o motion.npz
-  infer-cli style weights.fb clip.npz -o anna.style     a speaker's style, once and for all
+  infer-cli weights.fb speech.wav --words speech.json --style anna/ -o motion.npz
+  infer-cli weights.fb arrays.npz                       motion into arrays.out.npz
+  infer-cli style weights.fb anna/ -o anna.style        a speaker's style, once and for all
+  infer-cli features weights.fb speech.wav speech.json  what the networks are fed with
   infer-cli info weights.fb                             what a file holds, takes and gives
   infer-cli check weights.fb                            does it compute here what it should?
 
@@ -32,14 +33,30 @@ void AddCompute(CLI::App* app, Arguments* a) {
       ->type_name("NAME");
 }
 
+// What recordings need to be said of.
+void AddRecording(CLI::App* app, Arguments* a) {
+  app->add_option("--words", a->words, "Transcript with times, where INPUT does not hold it")
+      ->type_name("FILE");
+  app->add_option("--pose-fps", a->pose_rate,
+                  "Frames per second of OpenPose's files; default: as the recording's length says")
+      ->type_name("FPS")
+      ->check(CLI::Range(1.0, 1000.0, ""));
+}
+
 void AddInfer(CLI::App* app, Arguments* a) {
   app->add_option("WEIGHTS", a->weights, "Weights file")->type_name("FILE.fb");
-  app->add_option("INPUT", a->input, "Input arrays; infer-cli info WEIGHTS names them")
-      ->type_name("FILE.npz");
-  app->add_option("-o,--output", a->output, "Output arrays; default: INPUT with .out.npz for .npz")
-      ->type_name("FILE.npz");
-  app->add_option("--style", a->style, "Style: a .style file, or a clip (.npz) to take it from")
+  app->add_option("INPUT", a->inputs,
+                  "Recording, transcript, arrays (.npz; infer-cli info WEIGHTS names them), or a "
+                  "folder of these")
       ->type_name("FILE");
+  app->add_option("-o,--output", a->output,
+                  "Output arrays; default: the first INPUT with .out.npz for its ending")
+      ->type_name("FILE.npz");
+  app->add_option("--style", a->style,
+                  "Style: a .style file, a clip (.npz), or a folder with a speaker's recording, "
+                  "words and poses")
+      ->type_name("FILE");
+  AddRecording(app, a);
   AddCompute(app, a);
   app->add_option("--repeat", a->repeat, "Runs of each segment, for timing; default 1")
       ->type_name("N")
@@ -59,10 +76,14 @@ void AddInfer(CLI::App* app, Arguments* a) {
   AddShared(app, a);
 }
 
-// "a/speech.npz" -> "a/speech.out.npz"
-std::string DefaultOutput(const std::string& input) {
-  const bool known = input.ends_with(".npz") || input.ends_with(".npy");
-  return (known ? input.substr(0, input.size() - 4) : input) + ".out.npz";
+// "a/speech.wav" -> "a/speech.out.npz"
+std::string DefaultOutput(std::string input, const std::string& ending) {
+  while (input.size() > 1 && input.ends_with('/')) input.pop_back();
+  const std::size_t slash = input.rfind('/');
+  const std::size_t name = slash == std::string::npos ? 0 : slash + 1;
+  const std::size_t point = input.rfind('.');
+  const bool has_ending = point != std::string::npos && point > name;
+  return input.substr(0, has_ending ? point : input.size()) + ending;
 }
 
 Status Missing(const std::string& what) {
@@ -88,12 +109,31 @@ Result<Arguments> ParseArguments(int argc, const char* const* argv) {
 
   CLI::App* style = app.add_subcommand("style", "Compute a speaker's style from a clip, to reuse");
   style->add_option("WEIGHTS", a.weights, "Weights file")->type_name("FILE.fb")->required();
-  style->add_option("CLIP", a.input, "speech, text and pose of the speaker (.npz)")
-      ->type_name("FILE.npz")
+  style
+      ->add_option("CLIP", a.inputs,
+                   "Recording, words and poses of the speaker, arrays (.npz), or a folder of these")
+      ->type_name("FILE")
       ->required();
   style->add_option("-o,--output", a.output, "The style file")->type_name("FILE.style")->required();
+  AddRecording(style, &a);
   AddCompute(style, &a);
   AddShared(style, &a);
+
+  CLI::App* features =
+      app.add_subcommand("features", "Write what recordings and words are made into, every stage");
+  features
+      ->add_option("INPUT", a.inputs,
+                   "Weights file, recording, transcript, OpenPose or OpenFace files, or a folder "
+                   "of these")
+      ->type_name("FILE")
+      ->required();
+  features
+      ->add_option("-o,--output", a.output,
+                   "The arrays; default: the first INPUT with .features.npz for its ending")
+      ->type_name("FILE.npz");
+  AddRecording(features, &a);
+  AddCompute(features, &a);
+  AddShared(features, &a);
 
   CLI::App* check = app.add_subcommand("check", "Run the self-tests that a weights file carries");
   check->add_option("WEIGHTS", a.weights, "Weights file")->type_name("FILE.fb")->required();
@@ -114,11 +154,22 @@ Result<Arguments> ParseArguments(int argc, const char* const* argv) {
   if (info->parsed()) a.command = Command::kInfo;
   if (style->parsed()) a.command = Command::kStyle;
   if (check->parsed()) a.command = Command::kCheck;
+  if (features->parsed()) {
+    a.command = Command::kFeatures;
+    if (a.output.empty()) a.output = DefaultOutput(a.inputs.front(), ".features.npz");
+  }
   if (a.command != Command::kInfer) return a;
   if (a.weights.empty()) return Missing("WEIGHTS");
-  if (a.input.empty()) return Missing("INPUT.npz");
-  if (a.output.empty()) a.output = DefaultOutput(a.input);
+  if (a.inputs.empty() && !a.words.empty()) a.inputs = {a.words};
+  if (a.inputs.empty()) return Missing("INPUT");
+  if (a.output.empty()) a.output = DefaultOutput(a.inputs.front(), ".out.npz");
   return a;
+}
+
+std::string Arguments::Input() const {
+  std::string text;
+  for (const std::string& input : inputs) text += (text.empty() ? "" : ", ") + input;
+  return text;
 }
 
 }  // namespace gestus::cli

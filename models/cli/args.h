@@ -3,19 +3,22 @@
 #define GESTUS_MODELS_CLI_ARGS_H_
 
 #include <string>
+#include <vector>
 
 #include "engine/status.h"
 #include "models/network.h"
 
 namespace gestus::cli {
 
-enum class Command { kInfer, kInfo, kStyle, kCheck, kVersion, kHelp };
+enum class Command { kInfer, kInfo, kStyle, kFeatures, kCheck, kVersion, kHelp };
 
 struct Arguments {
   Command command = Command::kInfer;
   std::string weights;
-  std::string input;   ///< kStyle: the clip
-  std::string output;  ///< never empty for kInfer and kStyle
+  std::vector<std::string> inputs;  ///< kStyle: the clip
+  std::string words;                ///< a transcript, whatever it looks like
+  std::string output;               ///< never empty for kInfer, kStyle and kFeatures
+  double pose_rate = 0;             ///< frames per second of OpenPose's files; 0: found out
   std::string style;
   std::string network;
   std::string isa;
@@ -27,6 +30,9 @@ struct Arguments {
   bool taps = false;
   bool json = false;
   std::string help;  ///< kHelp: the text to print
+
+  /// "speech.wav, words.json"
+  std::string Input() const;
 };
 
 Result<Arguments> ParseArguments(int argc, const char* const* argv);

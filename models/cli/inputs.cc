@@ -80,6 +80,8 @@ InputKind KindOfText(std::string_view head) {
 
 std::string* PlaceOf(InputKind kind, Inputs* inputs) {
   switch (kind) {
+    case InputKind::kWeights:
+      return &inputs->weights;
     case InputKind::kArrays:
       return &inputs->arrays;
     case InputKind::kAudio:
@@ -97,6 +99,8 @@ std::string* PlaceOf(InputKind kind, Inputs* inputs) {
 
 const char* NameOf(InputKind kind) {
   switch (kind) {
+    case InputKind::kWeights:
+      return "weights file";
     case InputKind::kArrays:
       return "file of arrays";
     case InputKind::kAudio:
@@ -161,9 +165,11 @@ Result<InputKind> Recognise(const std::string& path) {
   }
   const Result<std::string> head = Head(path);
   if (!head.ok()) return head.status();
-  // An empty file is what its name says, so that its reader complains of it.
-  if (head->empty() && (path.ends_with(".wav") || path.ends_with(".flac")))
-    return InputKind::kAudio;
+  // These names promise arrays, so that their reader complains of what is none; and an empty file
+  // is what its name says.
+  if (path.ends_with(".npz") || path.ends_with(".npy")) return InputKind::kArrays;
+  if (head->empty() && path.ends_with(".wav")) return InputKind::kAudio;
+  if (head->starts_with("GESTUSW")) return InputKind::kWeights;
   if (head->starts_with("PK") || head->starts_with("\x93NUMPY")) return InputKind::kArrays;
   if (IsAudio(*head)) return InputKind::kAudio;
   const bool utf16 = head->starts_with("\xff\xfe") || head->starts_with("\xfe\xff");
@@ -175,6 +181,7 @@ Result<Inputs> SortInputs(const std::vector<std::string>& paths, const std::stri
   Inputs inputs;
   inputs.transcript = transcript;
   for (const std::string& path : paths) {
+    if (path == transcript) continue;
     const Result<InputKind> kind = Recognise(path);
     if (!kind.ok()) return kind.status();
     if (*kind == InputKind::kFolder) {

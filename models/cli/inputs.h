@@ -10,7 +10,16 @@
 
 namespace gestus::cli {
 
-enum class InputKind { kArrays, kAudio, kTranscript, kOpenPose, kOpenFace, kFolder, kUnknown };
+enum class InputKind {
+  kWeights,
+  kArrays,
+  kAudio,
+  kTranscript,
+  kOpenPose,
+  kOpenFace,
+  kFolder,
+  kUnknown
+};
 
 /// The kind of a file by its first bytes, of a folder by the names in it; errors begin with the
 /// path.
@@ -18,6 +27,7 @@ Result<InputKind> Recognise(const std::string& path);
 
 /// One of each kind at most; empty: not given.
 struct Inputs {
+  std::string weights;             ///< for `infer-cli features` alone
   std::string arrays;              ///< .npz or .npy
   std::string audio;               ///< WAV, or what libsndfile reads
   std::string transcript;          ///< words with times

@@ -12,6 +12,7 @@
 
 #include "models/cli/args.h"
 #include "models/cli/check.h"
+#include "models/cli/features.h"
 #include "models/cli/infer.h"
 #include "models/cli/info.h"
 #include "models/cli/machine.h"
@@ -47,6 +48,8 @@ Status Run(int argc, const char* const* argv) {
       return RunInfo(*arguments);
     case Command::kStyle:
       return RunStyle(*arguments);
+    case Command::kFeatures:
+      return RunFeatures(*arguments);
     case Command::kCheck:
       return RunCheck(*arguments);
     case Command::kVersion:

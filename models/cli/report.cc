@@ -19,6 +19,8 @@ std::string ArrayText(const std::string& name, const Array& array) {
   return name + " " + ShapeText(array.shape);
 }
 
+}  // namespace
+
 std::string ArraysText(const models::Arrays& arrays) {
   std::string text;
   std::size_t taps = 0;
@@ -32,6 +34,8 @@ std::string ArraysText(const models::Arrays& arrays) {
   if (taps > 0) text += " and " + Count(taps, "tap");
   return text;
 }
+
+namespace {
 
 void ArraysJson(JsonWriter* json, const char* key, const models::Arrays& arrays) {
   json->Key(key).BeginArray();
@@ -116,7 +120,9 @@ std::string ProfileText(const std::vector<OpProfile>& ops) {
 
 std::string InferReport::Text() const {
   const Timing timing = Summarise(run, arguments.repeat);
-  std::string text = "read   " + arguments.input + ": " + ArraysText(inputs) + "\n";
+  std::string text;
+  for (const std::string& line : style_used) text += "style  " + line + "\n";
+  for (const std::string& line : used) text += "read   " + line + "\n";
   text += "wrote  " + arguments.output + ": " + ArraysText(outputs);
   if (run.frame_rate > 0) {
     text += ", " + Significant(static_cast<double>(run.frames) / run.frame_rate, 3) + " s at " +
@@ -144,8 +150,9 @@ std::string InferReport::Json() const {
       .Member("weights", arguments.weights)
       .Member("kind", setup.network->kind())
       .Member("trained", setup.Trained())
-      .Member("input", arguments.input)
+      .Member("input", arguments.Input())
       .Member("output", arguments.output);
+  json.Member("used", used).Member("style_used", style_used);
   ArraysJson(&json, "inputs", inputs);
   ArraysJson(&json, "outputs", outputs);
   json.Member("segments", static_cast<std::uint64_t>(timing.segments))

@@ -3,6 +3,7 @@
 #define GESTUS_MODELS_CLI_REPORT_H_
 
 #include <string>
+#include <vector>
 
 #include "models/cli/args.h"
 #include "models/cli/setup.h"
@@ -21,13 +22,18 @@ Timing Summarise(const models::RunReport& report, int repeat);
 struct InferReport {
   const Arguments& arguments;
   const Setup& setup;
-  const models::Arrays& inputs;
+  const std::vector<std::string>& used;  ///< what was made of what, a line each
+  const std::vector<std::string>& style_used;
+  const models::Arrays& inputs;  ///< those that were given as such
   const models::Arrays& outputs;
   const models::RunReport& run;
 
   std::string Text() const;
   std::string Json() const;
 };
+
+/// "speech (192, 128), text (192, 768)"
+std::string ArraysText(const models::Arrays& arrays);
 
 /// Time, share, GFLOP/s and GB/s: first by kind of op, then of every op in order of execution.
 std::string ProfileText(const std::vector<OpProfile>& ops);

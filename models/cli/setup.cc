@@ -7,7 +7,6 @@
 #include <cstring>
 
 #include "models/cli/machine.h"
-#include "models/cli/npz.h"
 #include "weights_generated.h"
 
 namespace gestus::cli {
@@ -31,7 +30,7 @@ int Fit(const models::Signature& signature, const std::vector<std::string>& arra
 }
 
 Result<std::string> ChooseNetwork(const std::shared_ptr<const WeightsFile>& weights,
-                                  const std::vector<std::string>& arrays) {
+                                  const Offers& offers) {
   std::string best, names;
   int most = 0;
   for (const fb::Network* stored : *weights->root().networks()) {
@@ -39,7 +38,9 @@ Result<std::string> ChooseNetwork(const std::shared_ptr<const WeightsFile>& weig
     names += (names.empty() ? "" : ", ") + name;
     auto network = models::MakeNetwork(weights, name, {.plan = false});
     if (!network.ok()) return network.status();
-    const int fit = Fit((*network)->signature(), arrays);
+    const Result<std::vector<std::string>> offered = offers(*stored);
+    if (!offered.ok()) return offered.status();
+    const int fit = Fit((*network)->signature(), *offered);
     if (fit == most) best.clear();  // none is the one
     if (fit > most) {
       most = fit;
@@ -53,7 +54,7 @@ Result<std::string> ChooseNetwork(const std::shared_ptr<const WeightsFile>& weig
 
 }  // namespace
 
-Result<Setup> OpenNetwork(const Arguments& arguments, std::vector<std::string> arrays) {
+Result<Setup> OpenNetwork(const Arguments& arguments, const Offers& offers) {
   const Result<const kernels::KernelTable*> kernels = ChooseKernels(arguments.isa);
   if (!kernels.ok()) return kernels.status();
   Setup setup;
@@ -63,12 +64,7 @@ Result<Setup> OpenNetwork(const Arguments& arguments, std::vector<std::string> a
   setup.weights = *std::move(weights);
   std::string name = arguments.network;
   if (name.empty() && setup.weights->root().networks()->size() > 1) {
-    if (arrays.empty()) {
-      Result<std::vector<std::string>> listed = ListNpz(arguments.input);
-      if (!listed.ok()) return listed.status();
-      arrays = *std::move(listed);
-    }
-    Result<std::string> chosen = ChooseNetwork(setup.weights, arrays);
+    Result<std::string> chosen = ChooseNetwork(setup.weights, offers);
     if (!chosen.ok()) return chosen.status();
     name = *std::move(chosen);
   }
@@ -78,6 +74,7 @@ Result<Setup> OpenNetwork(const Arguments& arguments, std::vector<std::string> a
       models::MakeNetwork(setup.weights, name, options);
   if (!network.ok()) return network.status();
   setup.network = *std::move(network);
+  setup.name = setup.weights->FindNetwork(name)->name()->str();
   return setup;
 }
 

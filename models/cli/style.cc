@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <bit>
 
+#include "models/cli/feed.h"
+#include "models/cli/inputs.h"
 #include "models/cli/json.h"
 #include "models/cli/npy.h"
 #include "models/cli/npz.h"
@@ -40,9 +42,70 @@ const ArraySpec* FindInput(const models::Network& network, const std::string& na
   return nullptr;
 }
 
+Status ReadClipArrays(const Setup& setup, const std::string& path, bool whole, Arrays* inputs) {
+  const Result<std::vector<std::string>> names = ListNpz(path);
+  if (!names.ok()) return names.status();
+  std::vector<ArraySpec> wanted;
+  for (ArraySpec spec : setup.network->signature().inputs) {
+    if (!spec.name.starts_with(kClipPrefix)) continue;
+    if (!Contains(*names, spec.name)) spec.name.erase(0, std::string_view(kClipPrefix).size());
+    spec.required = whole;
+    wanted.push_back(spec);
+  }
+  if (wanted.empty()) return NoStyle(setup);
+  Result<NpzContents> clip = ReadNpz(path, wanted);
+  if (!clip.ok()) return clip.status();
+  for (const ArraySpec& spec : wanted) {
+    const auto found = clip->arrays.find(spec.name);
+    if (found == clip->arrays.end()) continue;
+    GESTUS_RETURN_IF_ERROR(models::CheckArray(spec, found->second).In(path));
+    const bool prefixed = spec.name.starts_with(kClipPrefix);
+    (*inputs)[prefixed ? spec.name : kClipPrefix + spec.name] = std::move(found->second);
+  }
+  return Status();
+}
+
+std::string Summary(const Arguments& arguments, const Setup& setup, const Array& style,
+                    const features::Account& account) {
+  std::string text;
+  for (const std::string& line : account.used) text += "read " + line + "\n";
+  text += arguments.output + ": the style of " + arguments.Input() + ", " + ShapeText(style.shape) +
+          " float32, for use with " + arguments.weights + "\n";
+  for (const std::string& note : account.notes) text += "note: " + note + "\n";
+  if (!setup.Trained()) text += std::string("warning: ") + kUntrained + "\n";
+  return text;
+}
+
+std::string SummaryJson(const Arguments& arguments, const Setup& setup, const Array& style,
+                        const features::Account& account) {
+  JsonWriter json;
+  json.BeginObject()
+      .Member("weights", arguments.weights)
+      .Member("trained", setup.Trained())
+      .Member("clip", arguments.Input())
+      .Member("output", arguments.output)
+      .Member("shape", style.shape)
+      .Member("used", account.used)
+      .Member("notes", account.notes)
+      .EndObject();
+  return json.text();
+}
+
+}  // namespace
+
+bool IsStyleInput(const std::string& name) {
+  return name == kStyle || name.starts_with(kClipPrefix);
+}
+
 Status NoStyle(const Setup& setup) {
   return Status(Code::kInvalidArgument, setup.weights->path() + ": " + setup.network->kind() +
                                             " has no style, expected a network that takes one");
+}
+
+Result<bool> IsStyleFile(const std::string& path) {
+  const Result<std::vector<std::string>> names = ListNpz(path);
+  if (!names.ok()) return names.status();
+  return Contains(*names, kChecksum);
 }
 
 Status LoadStyleFile(const Setup& setup, const std::string& path, Arrays* inputs) {
@@ -64,72 +127,28 @@ Status LoadStyleFile(const Setup& setup, const std::string& path, Arrays* inputs
   return Status();
 }
 
-// In a clip of its own the arrays need no prefix: "speech" stands for "style_speech".
-Status LoadClip(const Setup& setup, const std::string& path, const std::vector<std::string>& names,
-                Arrays* inputs) {
-  std::vector<ArraySpec> wanted;
-  for (ArraySpec spec : setup.network->signature().inputs) {
-    if (!spec.name.starts_with(kClipPrefix)) continue;
-    if (!Contains(names, spec.name)) spec.name.erase(0, std::string_view(kClipPrefix).size());
-    spec.required = true;
-    wanted.push_back(spec);
-  }
-  if (wanted.empty()) return NoStyle(setup);
-  Result<NpzContents> clip = ReadNpz(path, wanted);
-  if (!clip.ok()) return clip.status();
-  for (const ArraySpec& spec : wanted) {
-    Array& array = clip->arrays.at(spec.name);
-    GESTUS_RETURN_IF_ERROR(models::CheckArray(spec, array).In(path));
-    const bool prefixed = spec.name.starts_with(kClipPrefix);
-    (*inputs)[prefixed ? spec.name : kClipPrefix + spec.name] = std::move(array);
-  }
-  return Status();
+Status LoadClip(const Setup& setup, const std::string& path, Arrays* inputs) {
+  return ReadClipArrays(setup, path, /*whole=*/true, inputs);
 }
 
-std::string Summary(const Arguments& arguments, const Setup& setup, const Array& style,
-                    const models::RunReport& report) {
-  std::string text = arguments.output + ": the style of " + arguments.input + ", " +
-                     ShapeText(style.shape) + " float32, for use with " + arguments.weights + "\n";
-  for (const std::string& note : report.notes) text += "note: " + note + "\n";
-  if (!setup.Trained()) text += std::string("warning: ") + kUntrained + "\n";
-  return text;
-}
-
-std::string SummaryJson(const Arguments& arguments, const Setup& setup, const Array& style,
-                        const models::RunReport& report) {
-  JsonWriter json;
-  json.BeginObject()
-      .Member("weights", arguments.weights)
-      .Member("trained", setup.Trained())
-      .Member("clip", arguments.input)
-      .Member("output", arguments.output)
-      .Member("shape", style.shape)
-      .Member("notes", report.notes)
-      .EndObject();
-  return json.text();
-}
-
-}  // namespace
-
-bool IsStyleInput(const std::string& name) {
-  return name == kStyle || name.starts_with(kClipPrefix);
-}
-
-Status LoadStyle(const Setup& setup, const std::string& path, Arrays* inputs) {
-  const Result<std::vector<std::string>> names = ListNpz(path);
-  if (!names.ok()) return names.status();
-  return Contains(*names, kChecksum) ? LoadStyleFile(setup, path, inputs)
-                                     : LoadClip(setup, path, *names, inputs);
+Status LoadPartOfClip(const Setup& setup, const std::string& path, Arrays* inputs) {
+  return ReadClipArrays(setup, path, /*whole=*/false, inputs);
 }
 
 Status RunStyle(const Arguments& arguments) {
+  const Result<Inputs> given = SortInputs(arguments.inputs, arguments.words);
+  if (!given.ok()) return given.status();
   // In a bundle the network is the one with a style, whatever the clip calls its arrays.
-  Result<Setup> setup = OpenNetwork(arguments, {"style"});
+  Result<Setup> setup =
+      OpenNetwork(arguments, [](const fb::Network&) { return std::vector<std::string>{kStyle}; });
   if (!setup.ok()) return setup.status();
-  const Result<std::vector<std::string>> names = ListNpz(arguments.input);
-  if (!names.ok()) return names.status();
+  models::NetworkOptions network_options;
+  network_options.kernels = setup->kernels;
+  auto front_end = features::FrontEnd::Make(setup->weights, setup->name, network_options);
+  if (!front_end.ok()) return front_end.status();
+  features::Account account;
   Arrays clip;
-  GESTUS_RETURN_IF_ERROR(LoadClip(*setup, arguments.input, *names, &clip));
+  GESTUS_RETURN_IF_ERROR(ReadClip(arguments, *given, *setup, front_end->get(), &account, &clip));
   Result<AtomicFile> file = AtomicFile::Create(arguments.output);
   if (!file.ok()) return file.status().In(arguments.output);
 
@@ -138,7 +157,8 @@ Status RunStyle(const Arguments& arguments) {
   options.threads = arguments.threads;
   models::RunReport report;
   Result<Arrays> outputs = setup->network->Run(clip, options, &report);
-  if (!outputs.ok()) return outputs.status().In(arguments.input);
+  if (!outputs.ok()) return outputs.status().In(arguments.Input());
+  account.notes.insert(account.notes.end(), report.notes.begin(), report.notes.end());
   const auto style = outputs->find(kStyle);
   if (style == outputs->end()) return NoStyle(*setup);
 
@@ -146,8 +166,8 @@ Status RunStyle(const Arguments& arguments) {
                            {kChecksum, ChecksumArray(setup->weights->checksum())}};
   GESTUS_RETURN_IF_ERROR(WriteNpz(contents, &*file).In(arguments.output));
   GESTUS_RETURN_IF_ERROR(file->Commit().In(arguments.output));
-  return Print(arguments.json ? SummaryJson(arguments, *setup, style->second, report)
-                              : Summary(arguments, *setup, style->second, report));
+  return Print(arguments.json ? SummaryJson(arguments, *setup, style->second, account)
+                              : Summary(arguments, *setup, style->second, account));
 }
 
 }  // namespace gestus::cli

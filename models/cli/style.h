@@ -16,8 +16,18 @@ namespace gestus::cli {
 /// Whether the network takes `name` only to know the style: "style", "style_speech", ...
 bool IsStyleInput(const std::string& name);
 
-/// Adds to `inputs` what --style names: a ready style, or the arrays of a clip.
-Status LoadStyle(const Setup& setup, const std::string& path, models::Arrays* inputs);
+/// Whether an .npz is a .style file.
+Result<bool> IsStyleFile(const std::string& path);
+/// Adds to `inputs` the style of a .style file.
+Status LoadStyleFile(const Setup& setup, const std::string& path, models::Arrays* inputs);
+/// Adds to `inputs` the arrays of a clip, which must be complete; in a clip of its own they need no
+/// prefix: "speech" stands for "style_speech".
+Status LoadClip(const Setup& setup, const std::string& path, models::Arrays* inputs);
+/// The same of what there is: other arrays will be made.
+Status LoadPartOfClip(const Setup& setup, const std::string& path, models::Arrays* inputs);
+
+/// The error of a network without a style.
+Status NoStyle(const Setup& setup);
 
 /// infer-cli style
 Status RunStyle(const Arguments& arguments);

@@ -1,8 +1,9 @@
 #include "models/features/spec.h"
 
-#include <cmath>
+#include <tuple>
 
 #include "models/config.h"
+#include "models/normalisation.h"
 #include "weights_generated.h"
 
 namespace gestus::features {
@@ -96,6 +97,7 @@ void ReadFields(ConfigReader& read, const fb::Features& f, FeatureSpec* spec) {
   spec->pitch = read.Enum<PitchReading>("pitch", f.pitch(), fb::PitchReading::MAX);
   spec->pitch_ends = read.Enum<PitchEnds>("pitch_ends", f.pitch_ends(), fb::PitchEnds::MAX);
   spec->pause = Number(read, "pause", f.pause(), 0, 60);
+  spec->neck = read.Enum<NeckColumns>("neck", f.neck(), fb::NeckColumns::MAX);
   spec->landmarks = Sources(read, "landmarks", kLastLandmark, f.landmarks());
   if (f.tags() == nullptr) return;
   for (const flatbuffers::String* tag : *f.tags()) spec->tags.push_back(tag->str());
@@ -123,6 +125,15 @@ Result<FeatureSpec> ReadFeatureSpec(const fb::Network& network) {
     read.Fail("landmarks", std::to_string(spec.landmarks.size()),
               "half of d_face, " + std::to_string(spec.d_face));
   if (!read.status().ok()) return read.status();
+  if (spec.layout == Layout::kArrays || spec.layout == Layout::kSentences) return spec;
+  for (const auto& [stream, columns, mean] :
+       {std::tuple{"speech", spec.mel_bins, &spec.absent_speech},
+        std::tuple{"text", spec.d_text, &spec.absent_text}}) {
+    if (columns == 0) continue;
+    Result<models::Normalisation> statistics = models::ReadNormalisation(network, stream, columns);
+    if (!statistics.ok()) return statistics.status();
+    *mean = std::move(statistics->mean);
+  }
   return spec;
 }
 

@@ -20,6 +20,7 @@ enum class RowPlacement { kExact, kPats };
 enum class PitchReading { kSptk, kTextbook };
 enum class PitchEnds { kNearest, kLinear };
 enum class PoseSource { kNormalize, kData };
+enum class NeckColumns { kPosition, kZero };
 
 /// The inputs of a network fall into three layouts; others take arrays only.
 enum class Layout {
@@ -45,6 +46,7 @@ struct FeatureSpec {
   std::int64_t positions = 0;    ///< kSentences: tokens of a sequence, [CLS] and [SEP] included
   bool classifies = false;       ///< kSentences: one answer for each sequence
   PoseSource pose_source = PoseSource::kNormalize;
+  NeckColumns neck = NeckColumns::kPosition;
   std::vector<std::int64_t> joints;     ///< PATS numbers, in the order of X_pose
   std::vector<std::int64_t> landmarks;  ///< OpenPose face numbers, in the order of X_face
 
@@ -58,6 +60,8 @@ struct FeatureSpec {
   PitchReading pitch = PitchReading::kSptk;
   PitchEnds pitch_ends = PitchEnds::kNearest;
   double pause = 0.2;
+  /// What stands for a modality that is not there: the mean of its statistics; empty: zeros.
+  std::vector<float> absent_speech, absent_text;
   std::vector<std::string> tags;  ///< empty: the classifier's order
 };
 

@@ -28,32 +28,40 @@ std::vector<float> Pieces::WordMeans() const {
   return means;
 }
 
+Result<models::WordPiece> ReadTokeniser(const WeightsFile& file, const fb::Network& network) {
+  const std::string where = file.path() + ": network " + network.name()->str();
+  if (network.config_type() != fb::Config::BertConfig)
+    return Status(Code::kNotFound, where + ": is no BERT, expected one");
+  const fb::BertConfig& config = *network.config_as_BertConfig();
+  const WeightsFile::Entry* entry = file.Find(VocabularyName(network));
+  if (entry == nullptr)
+    return Status(Code::kNotFound,
+                  where + ": no vocabulary, expected the tensor " + VocabularyName(network));
+  auto words =
+      models::WordPiece::Make(std::string(static_cast<const char*>(entry->view.data), entry->bytes),
+                              {.lower_case = config.lower_case()});
+  if (!words.ok()) return words.status().In(where);
+  if (words->vocabulary().size() > static_cast<std::int32_t>(config.tokens()))
+    return Status(Code::kBadWeights,
+                  where + ": vocabulary has " + std::to_string(words->vocabulary().size()) +
+                      " tokens, expected at most " + std::to_string(config.tokens()));
+  return words;
+}
+
 Result<TokenNetwork> TokenNetwork::Make(std::shared_ptr<const WeightsFile> file,
                                         const std::string& name,
                                         const models::NetworkOptions& options) {
   const fb::Network* record = file->FindNetwork(name);
-  if (record == nullptr || record->config_type() != fb::Config::BertConfig)
-    return Status(Code::kNotFound, file->path() + ": " + name + ": expected a BERT network");
-  const fb::BertConfig& config = *record->config_as_BertConfig();
-  const WeightsFile::Entry* entry = file->Find(VocabularyName(*record));
-  if (entry == nullptr)
-    return Status(Code::kNotFound, file->path() + ": network " + name +
-                                       ": no vocabulary, expected the tensor " +
-                                       VocabularyName(*record));
+  if (record == nullptr)
+    return Status(Code::kNotFound, file->path() + ": no network called " + name);
+  Result<models::WordPiece> words = ReadTokeniser(*file, *record);
+  if (!words.ok()) return words.status();
   TokenNetwork result;
+  result.words_ = std::make_shared<const models::WordPiece>(*std::move(words));
   auto network = models::MakeNetwork(file, name, options);
   if (!network.ok()) return network.status();
   result.network_ = *std::move(network);
-  auto words =
-      models::WordPiece::Make(std::string(static_cast<const char*>(entry->view.data), entry->bytes),
-                              {.lower_case = config.lower_case()});
-  if (!words.ok()) return words.status().In(file->path() + ": network " + name);
-  if (words->vocabulary().size() > static_cast<std::int32_t>(config.tokens()))
-    return Status(Code::kBadWeights, file->path() + ": network " + name + ": vocabulary has " +
-                                         std::to_string(words->vocabulary().size()) +
-                                         " tokens, expected at most " +
-                                         std::to_string(config.tokens()));
-  result.words_ = std::make_shared<const models::WordPiece>(*std::move(words));
+  const fb::BertConfig& config = *record->config_as_BertConfig();
   result.max_tokens_ = std::int64_t{config.positions()} - 2;
   result.width_ = config.d_model();
   if (config.labels() != nullptr) {

@@ -19,6 +19,10 @@
 #include "models/network.h"
 #include "models/text/wordpiece.h"
 
+namespace gestus::fb {
+struct Network;
+}
+
 namespace gestus::features {
 
 /// Vectors of pieces, word after word.
@@ -30,6 +34,9 @@ struct Pieces {
   /// The mean of each word's pieces: (words, width), zeros for a word without any.
   std::vector<float> WordMeans() const;
 };
+
+/// The tokeniser of `network`, a BertConfig, from the vocabulary that travels with it.
+Result<models::WordPiece> ReadTokeniser(const WeightsFile& file, const fb::Network& network);
 
 /// A tokeniser and the network behind it.  The network may be used by one thread at a time.
 class TokenNetwork {

@@ -12,7 +12,7 @@ import re
 import sys
 import tempfile
 
-PAGES = ("README.md", "docs/*.md", "*/README.md", "tests/*/README.md")
+PAGES = ("README.md", "docs/*.md", "docs/*/*.md", "*/README.md", "tests/*/README.md")
 SPAN = re.compile(r"`([^`\n]+)`")
 FILE = re.compile(r"^(?:[\w.-]+/)+[\w-]+(?:\.inl)?\.(?:cc|h|py|md|txt|fbs|cmake|svg)$")
 LINK = re.compile(r"\]\((?!https?:)([^)#\s]+)\)")

@@ -145,7 +145,7 @@ class UsageTest(CliTest):
 
     def test_usage(self):
         for arguments in ((), (self.WEIGHTS,), ("--nonsense",), ("info",), ("style", self.WEIGHTS),
-                          ("style", self.WEIGHTS, "input.npz"), ("a", "b", "c"),
+                          ("style", self.WEIGHTS, "input.npz"), ("info", "a", "b"),
                           (self.WEIGHTS, "input.npz", "--threads", "0"),
                           (self.WEIGHTS, "input.npz", "--threads", "1e9"),
                           (self.WEIGHTS, "input.npz", "--threads"),
