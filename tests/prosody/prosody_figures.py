@@ -26,7 +26,7 @@ def run(stage, x, rate, mode="textbook"):
 def harmonics(rate, hz, slope=1.0):
     t = np.arange(rate) / rate
     k = np.arange(1, int(min(6000, 0.45 * rate) // hz) + 1)[:, None]
-    return 0.1 * (k ** -slope * np.cos(2 * np.pi * k * hz * t + k * k)).sum(0)
+    return 0.1 * (k ** -float(slope) * np.cos(2 * np.pi * k * hz * t + k * k)).sum(0)
 
 
 def add_noise(x, decibels):
@@ -105,6 +105,7 @@ def speech():
               f"{100 * np.abs(rows[both, 0] / other[both, 0] - 1).max():.2f} % at most")
 
 
-pitch()
-quality()
-speech()
+if __name__ == "__main__":
+    pitch()
+    quality()
+    speech()
