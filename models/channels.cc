@@ -1,12 +1,20 @@
 // Channels from the weights file, and values from tokens.
 #include "models/channels.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "models/run_support.h"
 #include "weights_generated.h"
 
 namespace gestus::models {
+
+std::int32_t Channel::TokenOf(float value) const {
+  if (std::isnan(value)) return kPadToken;
+  const double level = std::round((double{value} - double{minimum}) / double{step});
+  const double top = static_cast<double>(levels - 1);
+  return kFirstLevel + static_cast<std::int32_t>(std::clamp(level, 0.0, top));
+}
 
 void ReadChannel(ConfigReader& read, const fb::Channel& f, std::vector<Channel>* channels) {
   constexpr std::size_t kMaxChannels = 256;

@@ -26,6 +26,9 @@ struct Channel {
   std::int64_t stack = 0;  ///< of the decoder that serves it (Model 2)
 
   std::int64_t Tokens() const { return kFirstLevel + levels; }
+  /// The token of the level nearest to `value`: the lowest or the highest for what lies beyond
+  /// them, kPadToken for what is not a number.
+  std::int32_t TokenOf(float value) const;
   /// 0 for what is no level.
   float ValueOf(std::int32_t token) const {
     return token < kFirstLevel ? 0.0f : minimum + step * static_cast<float>(token - kFirstLevel);

@@ -29,8 +29,9 @@ struct VoiceQualityOptions {
 ///   5 Hammarberg index  20 log10(max |X| in 0 to 2 kHz / max |X| in 2 to 5 kHz), dB from -100 to
 ///                       100, or to half the sample rate where that is below 5 kHz
 ///
-/// Columns 2 to 4 are 0 where f0 is 0, jitter and shimmer also where a frame holds fewer than three
-/// and two periods.  A frame of silence, or with a sample that is not finite, has zeros.
+/// Columns 2 to 4 are 0 where f0 is 0, jitter also where a frame holds fewer than two whole
+/// periods, shimmer where it holds none.  A frame of silence, or with a sample that is not finite
+/// in it or within a period of it, has zeros in columns 2 to 5.
 class VoiceQuality {
  public:
   static constexpr std::size_t kColumns = 6;

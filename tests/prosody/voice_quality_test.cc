@@ -69,8 +69,8 @@ TEST_P(KnownQuality, Shimmer) {
 // White noise does not resemble itself a period later.  A frame of 60 ms estimates the share with a
 // spread of a few tenths of a dB.
 TEST_P(KnownQuality, HarmonicsToNoise) {
-  for (const double hz : {81.0, 120.0, 205.0, 310.0}) {
-    const Samples clean = test::Tone(GetParam(), 2, hz);
+  for (const double hz : {81.0, 205.0}) {
+    const Samples clean = test::Tone(GetParam(), 1, hz);
     double power = 0;
     for (const float v : clean) power += double{v} * double{v} / static_cast<double>(clean.size());
     for (const double want : {10.0, 20.0, 30.0}) {
