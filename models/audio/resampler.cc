@@ -113,7 +113,8 @@ float Resampler::At(const float* samples) const {
   return static_cast<float>(low + share * (high - low));
 }
 
-// Writes the outputs whose samples are there.
+// Writes the outputs whose samples are there.  A step is shorter than a filter, so that start_
+// never passes filled_.
 float* Resampler::Drain(float* rows) {
   while (start_ + 2 * half_ <= filled_) {
     *rows++ = At(&buffer_[start_]);
@@ -127,12 +128,10 @@ float* Resampler::Drain(float* rows) {
 float* Resampler::Take(const float* samples, std::size_t n, float* rows) {
   while (n > 0) {
     if (filled_ == buffer_.size()) {
-      // Going far down, the next output may begin behind all that is there.
-      const std::size_t drop = std::min(start_, filled_);
-      std::copy(buffer_.begin() + static_cast<std::ptrdiff_t>(drop), buffer_.end(),
+      std::copy(buffer_.begin() + static_cast<std::ptrdiff_t>(start_), buffer_.end(),
                 buffer_.begin());
-      start_ -= drop;
-      filled_ -= drop;
+      filled_ -= start_;
+      start_ = 0;
     }
     const std::size_t take = std::min(n, buffer_.size() - filled_);
     std::copy_n(samples, take, buffer_.data() + filled_);

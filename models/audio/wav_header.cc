@@ -187,16 +187,16 @@ void Walk::SetData(std::uint64_t begin, std::uint32_t said) {
   // its upper half.
   const bool never_set = size == 0 && riff_size_ != there + begin - kChunkHeader;
   const bool wrapped = there >= size && there - size > kUnknownSize;
-  if (there > 0 && (never_set || wrapped || size > there)) {
+  if (size != there && (never_set || wrapped || size > there)) {
     notes_->push_back("data: says " + Count(size, "byte") + ", but " + Grouped(there) +
                       " follow; read to the end of the file");
     header_.data_bytes = there;
   }
-  header_.data_bytes = std::min(header_.data_bytes, there);
   if (header_.frame_bytes == 0) return;  // of a foreign format
   if (const std::uint64_t rest = header_.data_bytes % header_.frame_bytes; rest != 0) {
-    notes_->push_back("data: ends within a frame of " + Count(header_.frame_bytes, "byte") +
-                      ", whose " + std::to_string(rest) + " were left out");
+    notes_->push_back("data: " + Count(rest, "byte") +
+                      " left out at the end, less than a frame of " +
+                      Count(header_.frame_bytes, "byte"));
     header_.data_bytes -= rest;
   }
   if (header_.data_bytes == 0) notes_->push_back("data: holds no samples");

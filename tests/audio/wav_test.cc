@@ -51,6 +51,7 @@ Sound ReadPath(const std::string& path, std::size_t piece = 1000) {
                       part.begin() + static_cast<std::ptrdiff_t>(*got));
   }
   for (const float sample : sound.mono) EXPECT_TRUE(std::isfinite(sample));
+  EXPECT_EQ(sound.frames, std::ssize(sound.mono));
   sound.notes = s.notes();
   return sound;
 }
@@ -229,7 +230,7 @@ TEST(WavTest, LeavesOutAPartialFrame) {
   data.push_back(7);
   const Sound sound = Read(Wav({}, data));
   EXPECT_EQ(sound.mono, kRamp);
-  EXPECT_EQ(Notes(sound), "data: ends within a frame of 2 bytes, whose 1 were left out|");
+  EXPECT_EQ(Notes(sound), "data: 1 byte left out at the end, less than a frame of 2 bytes|");
 }
 
 TEST(WavTest, WeighsBlockAlign) {
@@ -285,6 +286,10 @@ TEST(WavTest, SaysWhatIsWrong) {
   EXPECT_EQ(error({.before_fmt = early}),
             "data: comes before any fmt chunk, which must say what it holds");
   ByteVector header = Wav({}, data);
+  header.resize(44);
+  EXPECT_EQ(
+      Notes(Read(header)),
+      "data: says 16 bytes, but 0 follow; read to the end of the file|data: holds no samples|");
   header.resize(12);
   EXPECT_EQ(Read(header).error,
             "ends at byte 12 without a data chunk, and without a fmt chunk, expected the samples "
