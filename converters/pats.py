@@ -9,7 +9,7 @@ import functools
 
 import numpy as np
 
-from . import features, hdf5, isolate
+from . import hdf5, isolate
 from .errors import ConvertError
 
 JOINTS = 52  # x of each, then y of each
@@ -18,8 +18,13 @@ DEFAULT_JOINTS = tuple(range(11))
 # PATS' loader cuts windows of int(4.3 * 89) rows and takes every round(89 / 15)th of them for the
 # int(4.3 * 15) frames of a segment.
 SEGMENT = 64
-WINDOW = int(4.3 * features.PATS_MEL_RATE)
-STRIDE = round(features.PATS_MEL_RATE / features.FRAME_RATE)
+# What PATS' loader takes log_mel_512 to have: int(45.6 * 1000 / 512) rows per second.
+PATS_MEL_RATE = 89
+FRAME_RATE = 15.0  # frames per second of text and pose
+MEL_BINS = 128
+D_TEXT = 768
+WINDOW = int(4.3 * PATS_MEL_RATE)
+STRIDE = round(PATS_MEL_RATE / FRAME_RATE)
 # Rows a frame: 5.74 of 44.1 kHz, 6.25 of 48 kHz; other rates do not fit a stride of 6.
 _LEAST_ROWS, _MOST_ROWS = 5.0, 7.0
 _SPARE_ROWS = 2 * STRIDE
@@ -103,7 +108,7 @@ class _File(hdf5.SafeFile):
         self.source = source
 
     def read(self):
-        wanted = {"audio/log_mel_512": features.MEL_BINS, "text/bert": features.D_TEXT,
+        wanted = {"audio/log_mel_512": MEL_BINS, "text/bert": D_TEXT,
                   f"pose/{self.source}": 2 * JOINTS}
         pose = self.child(self.root, "pose", self.h5py.Group)
         if self.has(pose, "confidence"):

@@ -4,12 +4,13 @@ import argparse
 import hashlib
 import json
 import pathlib
+import shutil
+import string
 import subprocess
 import sys
 
 import numpy as np
 
-from .. import features
 from ..errors import ConvertError
 from . import recordings, sheet, style_clip, terminal
 
@@ -17,7 +18,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 SPEECH, CLIP = "0870", "0890"
 SENTENCE = ("“And Mr John Dashwood had then leisure to consider how much there might be prudently in "
             "his power to do for them.”")
-RATE = features.FRAME_RATE
+RATE = 15.0  # motion frames per second
 UNTRAINED = ("No trained weights are public: these are random, so the motion is noise around a figure "
              "at rest.")
 
@@ -39,29 +40,45 @@ def main():
 
 
 def demo(options, out):
-    say("features of real speech, and of another recording as the style clip")
     speech, clip = recordings.load(SPEECH), recordings.load(CLIP)
-    arrays = stream_arrays(speech)
-    np.savez(out / "speech.npz", **arrays)
-    clip_arrays = stream_arrays(clip)
-    clip_arrays["pose"] = style_clip.synthetic_pose(clip, len(clip_arrays["speech"]), RATE)
-    np.savez(out / "clip.npz", **clip_arrays)
+    words = write_words(speech, out / "speech.json")
+    speaker = out / "speaker"
+    speaker.mkdir(exist_ok=True)
+    shutil.copyfile(clip.path, speaker / "clip.wav")
+    write_words(clip, speaker / "clip.json")
+    pose = style_clip.synthetic_pose(clip, int(clip.seconds * RATE), RATE)
+    style_clip.write_openpose(pose, speaker / "poses")
 
     weights = random_weights(out)
-    command = [options.infer_cli, weights, out / "speech.npz", "--style", out / "clip.npz",
-               "-o", out / "motion.npz", "--threads", options.threads, "--json"]
-    say(" ".join(map(shown, command)))
-    done = subprocess.run([str(c) for c in command], check=True, stdout=subprocess.PIPE, text=True)
-    report = json.loads(done.stdout)
-    pose = np.load(out / "motion.npz")["pose"]
+    motion, stages = out / "motion.npz", out / "features.npz"
+    report = infer_cli(options.infer_cli, weights, speech.path, "--words", words, "--style", speaker,
+                       "-o", motion, "--threads", options.threads)
+    infer_cli(options.infer_cli, "features", weights, speech.path, words, "-o", stages)
+    pose = np.load(motion)["pose"]
 
-    svg = sheet.Sheet(arrays["speech"], pose, speech.words, RATE).render(
+    svg = sheet.Sheet(np.load(stages)["speech"], pose, speech.words, RATE).render(
         SENTENCE,
         f"ZS-MSTM 1.0 at full size, {len(pose)} frames at {RATE:g} a second. " + UNTRAINED,
         "Speech: LibriVox, public domain; its log-mel spectrogram and words (times estimated). "
         "Below, the pose every 0.4 s and the path of the wrists since the last one.")
     (out / "motion.svg").write_text(svg, encoding="utf-8")
     report_to_terminal(speech, pose, report, out)
+
+
+def infer_cli(*command):
+    """Shows and runs a command; returns its report."""
+    say(" ".join(map(shown, command)))
+    done = subprocess.run([*map(str, command), "--json"], check=True, stdout=subprocess.PIPE,
+                          text=True)
+    return json.loads(done.stdout)
+
+
+def write_words(recording, path):
+    """The transcript as a list of words with their times, one of the forms that infer-cli reads."""
+    words = [{"word": word, "start": round(start, 3), "end": round(end, 3)}
+             for word, start, end in recording.words]
+    path.write_text(json.dumps({"words": words}, indent=1))
+    return path
 
 
 def say(text):
@@ -74,27 +91,36 @@ def shown(path):
     return str(path.relative_to(ROOT)) if path.is_absolute() and ROOT in path.parents else str(path)
 
 
-def stream_arrays(recording):
-    """What the network takes of a recording: log-mel and word vectors, a row a frame."""
-    mel = features.speech_frames(recording.samples, recording.rate)
-    words, starts, _ = zip(*recording.words)
-    return {"speech": mel, "text": features.text_frames(words, starts, len(mel))}
+# A BERT of two layers is as good as one of twelve when its weights are random; letters are its pieces.
+TOKENS = ["[PAD]", "[UNK]", "[CLS]", "[SEP]", *string.ascii_lowercase, *string.punctuation,
+          *("##" + letter for letter in string.ascii_lowercase)]
 
 
 def random_weights(out):
     """The weights file, made once for each version of what makes it."""
-    makers = [ROOT / "engine" / "schema" / "weights.fbs",
+    makers = [ROOT / "engine" / "schema" / "weights.fbs", pathlib.Path(__file__),
+              *(ROOT / "converters" / "kinds").glob("*.py"),
               *(ROOT / "converters" / f"{name}.py" for name in
-                ("networks", "random_weights", "schema", "shapes", "weights_file"))]
+                ("bundle", "networks", "random_weights", "schema", "shapes", "weights_file"))]
     version = hashlib.sha256(b"".join(path.read_bytes() for path in makers)).hexdigest()[:12]
     path = out / f"untrained-{version}.fb"
     if not path.exists():
         for old in out.glob("untrained-*.fb"):
             old.unlink()
-        say("random weights of the full-size network, 212 million (once)")
-        subprocess.run([sys.executable, "-m", "converters", "random", "--no-self-test", "-o",
-                        str(path)], check=True, cwd=ROOT)
+        say("random weights of the full-size network, 212 million, and of a small BERT (once)")
+        (out / "vocabulary.txt").write_text("\n".join(TOKENS) + "\n")
+        (out / "bert.json").write_text(json.dumps({"layers": 2, "tokens": len(TOKENS)}))
+        converters("random", "--no-self-test", "-o", out / "zs_mstm1.fb")
+        converters("random", "--no-self-test", "--kind", "bert", "--config", out / "bert.json",
+                   "--vocabulary", out / "vocabulary.txt", "-o", out / "bert.fb")
+        converters("bundle", out / "zs_mstm1.fb", out / "bert.fb", "-o", path)
+        for part in ("zs_mstm1.fb", "bert.fb"):
+            (out / part).unlink()
     return path
+
+
+def converters(*arguments):
+    subprocess.run([sys.executable, "-m", "converters", *map(str, arguments)], check=True, cwd=ROOT)
 
 
 def report_to_terminal(speech, pose, report, out):
@@ -103,8 +129,8 @@ def report_to_terminal(speech, pose, report, out):
     print(terminal.level(recordings.loudness(speech.samples, speech.rate)))
     print(SENTENCE + "\n")
     print(UNTRAINED)
-    print("Word vectors are hashes of the words (no BERT here), word times are estimated, and the "
-          "style clip's\npose is a procedural wave of the arms: see converters/demo.\n")
+    print("BERT is random too, word times are estimated, and the style clip's video is a procedural "
+          "wave of the\narms: see converters/demo.\n")
     print(f"speed    {1000 * report['segment_seconds_median']:.0f} ms a segment of 64 frames "
           f"(4.27 s of speech), {report['threads']} thread, {report['isa']}")
     print(f"picture  {shown(out / 'motion.svg')}\nmotion   {shown(out / 'motion.npz')}")

@@ -15,9 +15,11 @@ _NAME = "sense_and_sensibility_01_austen_64kb-"
 
 
 class Recording:
-    """Mono samples in [-1, 1], their rate, and the words with their times in seconds."""
+    """The file's path, mono samples in [-1, 1], their rate, and the words with their times in
+    seconds."""
 
-    def __init__(self, samples, rate, words):
+    def __init__(self, path, samples, rate, words):
+        self.path = path
         self.samples = samples
         self.rate = rate
         self.words = estimate_times(samples, rate, words)
@@ -38,7 +40,7 @@ def load(number):
         raw = file.readframes(file.getnframes())
         rate = file.getframerate()
     samples = np.frombuffer(raw, "<i2").astype(np.float32) / 32768
-    return Recording(samples, rate, _words(path.stem))
+    return Recording(path, samples, rate, _words(path.stem))
 
 
 def _words(stem):

@@ -4,7 +4,7 @@ from ..checks import divides, expect, positive
 from ..kind import Kind
 from ..layers import linear, norm
 
-# Of log_mel_512 (converters/features.py) on read speech; PATS' own values are not published.
+# Of log_mel_512 on read speech; PATS' own values are not published.
 SPEECH = {"stream": "speech", "mean": [-6.0], "deviation": [3.5]}
 
 PUBLISHED_FRAMES = 1024

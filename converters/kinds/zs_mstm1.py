@@ -141,8 +141,9 @@ class ZsMstm1(Kind):
                 "style_pose": streams.rows("pose", style)}
 
     def demo(self):
-        # POSE has the neck at 0.
-        return {"normalisations": [ast.SPEECH, POSE], "features": {"neck": "Zero"}}
+        # POSE has the neck at 0, and the statistics of speech are of recordings at 16 kHz.
+        return {"normalisations": [ast.SPEECH, POSE],
+                "features": {"neck": "Zero", "sample_rate": 16000}}
 
     def joints(self, config):
         return pats_joints(config["d_pose"])
