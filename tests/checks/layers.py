@@ -17,6 +17,9 @@ FRONT_ENDS = {
     "models/motion": {"models/io"},
     "models/features": {"models/io", "models/text", "models/audio", "models/prosody",
                         "models/words", "models/motion", "models"},
+    "models/outputs": {"models/io", "models/motion", "models"},
+    "models/player": {"models/io", "models/outputs", "models/words", "models"},
+    "models/metrics": {"models/io", "models/outputs", "models"},
 }
 ALL_MODELS = {"models", "engine", "kernels", *FRONT_ENDS}
 # What the files of a folder may include from this project; the longest matching folder counts.
