@@ -1,0 +1,176 @@
+// Biovision hierarchy: the skeleton in its rest pose, and three angles a joint for every frame.  y
+// is up, z points to the viewer, x to the right of the picture (the figure's left); centimetres and
+// degrees.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "models/outputs/lift.h"
+#include "models/outputs/skeleton.h"
+#include "models/outputs/writers.h"
+
+namespace gestus::outputs {
+namespace {
+
+constexpr int kDigits = 6;
+// The end of a chain, for programs that draw bones: a share of the last bone.
+constexpr double kEndShare = 0.25;
+using Angles = std::array<double, 3>;  // about z, x, y; rad
+
+std::string Numbers(std::initializer_list<double> values) {
+  std::string text;
+  for (const double value : values) {
+    if (!text.empty()) text += ' ';
+    AppendFixed(&text, value, kDigits);
+  }
+  return text;
+}
+
+void AppendHierarchy(const Skeleton& skeleton, std::string* text) {
+  *text += "HIERARCHY\n";
+  std::vector<int> open;  // joints whose braces are
+  const auto indent = [&] { return std::string(open.size(), '\t'); };
+  const auto close = [&] {
+    open.pop_back();
+    *text += indent() + "}\n";
+  };
+  for (int i = 0; i < std::ssize(skeleton.joints); ++i) {
+    const Joint& joint = skeleton.joints[static_cast<std::size_t>(i)];
+    while (!open.empty() && open.back() != joint.parent) close();
+    *text += indent() + (i == 0 ? "ROOT " : "JOINT ") + joint.name + "\n" + indent() + "{\n";
+    open.push_back(i);
+    *text += indent() + "OFFSET " + Numbers({joint.offset.x, joint.offset.y, joint.offset.z}) +
+             "\n" + indent() +
+             (i == 0 ? "CHANNELS 6 Xposition Yposition Zposition" : "CHANNELS 3") +
+             " Zrotation Xrotation Yrotation\n";
+    if (!joint.ends) continue;
+    *text += indent() + "End Site\n" + indent() + "{\n" + indent() + "\tOFFSET " +
+             Numbers({joint.offset.x * kEndShare, joint.offset.y * kEndShare,
+                      joint.offset.z * kEndShare}) +
+             "\n" + indent() + "}\n";
+  }
+  while (!open.empty()) close();
+}
+
+// Angles of every bone, frame after frame, without jumps by full turns.
+class Poser {
+ public:
+  Poser(const Skeleton& skeleton, bool lifted)
+      : skeleton_(skeleton),
+        lifted_(lifted),
+        world_(skeleton.bones.size()),
+        turns_(skeleton.bones.size()),
+        angles_(skeleton.bones.size()) {}
+
+  /// `spans` of the next frame, one a bone.  A bone without length stays as it was.
+  const std::vector<Angles>& Next(const Vector3* spans) {
+    for (std::size_t i = 0; i < skeleton_.bones.size(); ++i) {
+      const double length = Length(spans[i]);
+      if (!skeleton_.IsBone(static_cast<int>(i)) || !(length > 1e-9)) continue;
+      const Vector3& v = spans[i];
+      const Vector3& rest = skeleton_.bones[i].rest;
+      world_[i] = Between(rest, {v.x / length, v.y / length, v.z / length});
+      turns_[i] = Nearest(std::atan2(v.y, v.x) - std::atan2(rest.y, rest.x), turns_[i]);
+    }
+    for (std::size_t i = 0; i < skeleton_.bones.size(); ++i) {
+      if (!skeleton_.IsBone(static_cast<int>(i))) continue;
+      const int before = skeleton_.bones[i].before;
+      const auto b = static_cast<std::size_t>(before);
+      if (lifted_) {
+        const Quaternion local =
+            before == kNone ? world_[i] : Product(Inverse(world_[b]), world_[i]);
+        angles_[i] = AnglesZxy(local, angles_[i]);
+      } else {
+        angles_[i] = {before == kNone ? turns_[i] : turns_[i] - turns_[b], 0, 0};
+      }
+    }
+    return angles_;
+  }
+
+ private:
+  const Skeleton& skeleton_;
+  bool lifted_;
+  std::vector<Quaternion> world_;  // from the rest pose, of each bone
+  std::vector<double> turns_;      // the same in the plane, about z
+  std::vector<Angles> angles_;     // from the bone before
+};
+
+// Where the neck stands: its way from where it mostly is.
+class NeckPath {
+ public:
+  NeckPath(const Motion& motion, const Skeleton& skeleton)
+      : body_(*motion.body), skeleton_(skeleton) {
+    if (!Moves()) return;
+    for (const bool vertical : {false, true}) {
+      std::vector<float> values;
+      for (std::int64_t t = 0; t < motion.frames; ++t) values.push_back(At(t, vertical));
+      const auto middle = values.begin() + std::ssize(values) / 2;
+      std::nth_element(values.begin(), middle, values.end());
+      (vertical ? y_ : x_) = *middle;
+    }
+  }
+
+  Vector3 Place(std::int64_t frame) const {
+    if (!Moves()) return {};
+    return {(double{At(frame, false)} - x_) * skeleton_.neck_cm,
+            (y_ - double{At(frame, true)}) * skeleton_.neck_cm, 0};
+  }
+
+ private:
+  bool Moves() const { return body_.neck_is_position && skeleton_.neck != kNone; }
+  float At(std::int64_t frame, bool vertical) const {
+    const auto neck = static_cast<std::size_t>(skeleton_.neck);
+    return vertical ? body_.y(frame, neck) : body_.x(frame, neck);
+  }
+
+  const Figure& body_;
+  const Skeleton& skeleton_;
+  double x_ = 0, y_ = 0;
+};
+
+}  // namespace
+
+Status WriteBvh(const Motion& motion, const std::string& path, const FormatOptions& options,
+                bool lifted) {
+  if (!motion.body) return Lacks("body", lifted ? Format::kBvh3d : Format::kBvh);
+  const LengthQuantile median = [](const Bone&) { return 0.5; };
+  const Result<Skeleton> skeleton = MakeSkeleton(motion, options, lifted ? LiftedQuantile : median);
+  if (!skeleton.ok()) return skeleton.status();
+  const std::size_t bones = skeleton->bones.size();
+  std::vector<Vector3> spans;
+  for (std::int64_t t = 0; t < motion.frames; ++t) {
+    for (int i = 0; i < static_cast<int>(bones); ++i)
+      spans.push_back(skeleton->IsBone(i) ? Span(*skeleton, *motion.body, t, i) : Vector3{});
+  }
+  if (lifted) Lift(*skeleton, motion.frames, &spans);
+
+  Result<TextFile> file = TextFile::Create(path);
+  if (!file.ok()) return file.status();
+  std::string text;
+  AppendHierarchy(*skeleton, &text);
+  text += "MOTION\nFrames: " + std::to_string(motion.frames) +
+          "\nFrame Time: " + Exact(1 / motion.frame_rate) + "\n";
+  GESTUS_RETURN_IF_ERROR(file->Add(text));
+  Poser poser(*skeleton, lifted);
+  const NeckPath neck(motion, *skeleton);
+  for (std::int64_t t = 0; t < motion.frames; ++t) {
+    const std::vector<Angles>& angles =
+        poser.Next(spans.data() + static_cast<std::size_t>(t) * bones);
+    const Vector3 place = neck.Place(t);
+    std::string row = Numbers({place.x, place.y, place.z});
+    for (const Joint& joint : skeleton->joints) {
+      for (const std::size_t axis : {0U, 1U, 2U}) {
+        const double angle =
+            joint.bone == kNone ? 0 : angles[static_cast<std::size_t>(joint.bone)][axis];
+        row += ' ';
+        AppendFixed(&row, angle * 180 / kPi, kDigits);
+      }
+    }
+    GESTUS_RETURN_IF_ERROR(file->Add(row + "\n"));
+  }
+  return file->Commit();
+}
+
+}  // namespace gestus::outputs
