@@ -12,6 +12,7 @@ Examples:
   infer-cli weights.fb arrays.npz                       motion into arrays.out.npz
   infer-cli style weights.fb anna/ -o anna.style        a speaker's style, once and for all
   infer-cli features weights.fb speech.wav speech.json  what the networks are fed with
+  infer-cli export weights.fb m.npz --export bvh=m.bvh  motion for other programs
   infer-cli info weights.fb                             what a file holds, takes and gives
   infer-cli check weights.fb                            does it compute here what it should?
 
@@ -43,6 +44,24 @@ void AddRecording(CLI::App* app, Arguments* a) {
       ->check(CLI::Range(1.0, 1000.0, ""));
 }
 
+// Files of other programs.
+CLI::Option* AddExport(CLI::App* app, Arguments* a) {
+  app->add_option("--stance", a->stance,
+                  "Where the figure stands in OpenPose's picture: pixels of the neck and of the "
+                  "length from there to the shoulder; default 640,360,100")
+      ->type_name("X,Y,LENGTH")
+      ->delimiter(',')
+      ->expected(3);
+  app->add_flag("--halve", a->halve, "Halve OpenFace's values, as the author did to animate");
+  return app
+      ->add_option(
+          "--export", a->exports,
+          "Write the motion as openpose, openface, openface2, csv, bvh, bvh3d, arkit, vrm, "
+          "fap or bap; may be repeated")
+      ->type_name("FORMAT=PATH")
+      ->allow_extra_args(false);
+}
+
 void AddInfer(CLI::App* app, Arguments* a) {
   app->add_option("WEIGHTS", a->weights, "Weights file")->type_name("FILE.fb");
   app->add_option("INPUT", a->inputs,
@@ -56,6 +75,7 @@ void AddInfer(CLI::App* app, Arguments* a) {
                   "Style: a .style file, a clip (.npz), or a folder with a speaker's recording, "
                   "words and poses")
       ->type_name("FILE");
+  AddExport(app, a);
   AddRecording(app, a);
   AddCompute(app, a);
   app->add_option("--repeat", a->repeat, "Runs of each segment, for timing; default 1")
@@ -135,6 +155,15 @@ Result<Arguments> ParseArguments(int argc, const char* const* argv) {
   AddCompute(features, &a);
   AddShared(features, &a);
 
+  CLI::App* convert = app.add_subcommand("export", "Write motion in the files of other programs");
+  convert->add_option("WEIGHTS", a.weights, "Weights file")->type_name("FILE.fb")->required();
+  convert->add_option("MOTION", a.inputs, "What a run has put out")
+      ->type_name("FILE.npz")
+      ->expected(1)
+      ->required();
+  AddExport(convert, &a)->required();
+  AddShared(convert, &a);
+
   CLI::App* check = app.add_subcommand("check", "Run the self-tests that a weights file carries");
   check->add_option("WEIGHTS", a.weights, "Weights file")->type_name("FILE.fb")->required();
   AddCompute(check, &a);
@@ -153,6 +182,7 @@ Result<Arguments> ParseArguments(int argc, const char* const* argv) {
   if (version) a.command = Command::kVersion;
   if (info->parsed()) a.command = Command::kInfo;
   if (style->parsed()) a.command = Command::kStyle;
+  if (convert->parsed()) a.command = Command::kExport;
   if (check->parsed()) a.command = Command::kCheck;
   if (features->parsed()) {
     a.command = Command::kFeatures;

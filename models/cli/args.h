@@ -10,7 +10,7 @@
 
 namespace gestus::cli {
 
-enum class Command { kInfer, kInfo, kStyle, kFeatures, kCheck, kVersion, kHelp };
+enum class Command { kInfer, kInfo, kStyle, kFeatures, kExport, kCheck, kVersion, kHelp };
 
 struct Arguments {
   Command command = Command::kInfer;
@@ -20,6 +20,9 @@ struct Arguments {
   std::string output;               ///< never empty for kInfer, kStyle and kFeatures
   double pose_rate = 0;             ///< frames per second of OpenPose's files; 0: found out
   std::string style;
+  std::vector<std::string> exports;  ///< FORMAT=PATH each
+  std::vector<float> stance;         ///< X, Y and length of the shoulder; empty: the default
+  bool halve = false;                ///< OpenFace's values
   std::string network;
   std::string isa;
   int threads = 1;

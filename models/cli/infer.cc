@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "models/cli/export.h"
 #include "models/cli/feed.h"
 #include "models/cli/inputs.h"
 #include "models/cli/machine.h"
@@ -129,6 +130,8 @@ Result<Arrays> RunAll(const Arguments& arguments, Setup* setup, Feed* feed,
 }  // namespace
 
 Status RunInfer(const Arguments& arguments) {
+  const Result<Exports> exports = ParseExports(arguments);
+  if (!exports.ok()) return exports.status();
   const Result<Inputs> given = SortInputs(arguments.inputs, arguments.words);
   if (!given.ok()) return given.status();
   Result<Setup> setup = OpenNetworkFor(arguments, *given);
@@ -147,10 +150,17 @@ Status RunInfer(const Arguments& arguments) {
   if (!outputs.ok()) return outputs.status();
   GESTUS_RETURN_IF_ERROR(WriteNpz(*outputs, &*file).In(arguments.output));
   GESTUS_RETURN_IF_ERROR(file->Commit().In(arguments.output));
+  if (!exports->files.empty()) {
+    const Result<outputs::Motion> motion =
+        outputs::MotionOf(*setup->weights->FindNetwork(setup->name), *outputs);
+    if (!motion.ok()) return motion.status().In(arguments.weights);
+    GESTUS_RETURN_IF_ERROR(WriteExports(*motion, *exports));
+  }
 
   report.notes.insert(report.notes.begin(), feed->account.notes.begin(), feed->account.notes.end());
-  const InferReport said{arguments, *setup, feed->account.used, feed->style_used, feed->arrays,
-                         *outputs,  report};
+  const std::vector<std::string> exported = exports->Lines();
+  const InferReport said{arguments,    *setup,   feed->account.used, feed->style_used,
+                         feed->arrays, *outputs, exported,           report};
   return Print(arguments.json ? said.Json() : said.Text());
 }
 
