@@ -56,7 +56,7 @@ CLI::Option* AddExport(CLI::App* app, Arguments* a) {
   return app
       ->add_option(
           "--export", a->exports,
-          "Write the motion as openpose, openface, openface2, csv, bvh, bvh3d, arkit, vrm, "
+          "Write the motion as openpose, openface, openface2, csv, bvh, bvh3d, arkit, vrm, vrma, "
           "fap or bap; may be repeated")
       ->type_name("FORMAT=PATH")
       ->allow_extra_args(false);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "models/outputs/lift.h"
+#include "models/outputs/poser.h"
 #include "models/outputs/skeleton.h"
 #include "models/outputs/writers.h"
 
@@ -17,7 +18,6 @@ namespace {
 constexpr int kDigits = 6;
 // The end of a chain, for programs that draw bones: a share of the last bone.
 constexpr double kEndShare = 0.25;
-using Angles = std::array<double, 3>;  // about z, x, y; rad
 
 std::string Numbers(std::initializer_list<double> values) {
   std::string text;
@@ -53,49 +53,6 @@ void AppendHierarchy(const Skeleton& skeleton, std::string* text) {
   }
   while (!open.empty()) close();
 }
-
-// Angles of every bone, frame after frame, without jumps by full turns.
-class Poser {
- public:
-  Poser(const Skeleton& skeleton, bool lifted)
-      : skeleton_(skeleton),
-        lifted_(lifted),
-        world_(skeleton.bones.size()),
-        turns_(skeleton.bones.size()),
-        angles_(skeleton.bones.size()) {}
-
-  /// `spans` of the next frame, one a bone.  A bone without length stays as it was.
-  const std::vector<Angles>& Next(const Vector3* spans) {
-    for (std::size_t i = 0; i < skeleton_.bones.size(); ++i) {
-      const double length = Length(spans[i]);
-      if (!skeleton_.IsBone(static_cast<int>(i)) || !(length > 1e-9)) continue;
-      const Vector3& v = spans[i];
-      const Vector3& rest = skeleton_.bones[i].rest;
-      world_[i] = Between(rest, {v.x / length, v.y / length, v.z / length});
-      turns_[i] = Nearest(std::atan2(v.y, v.x) - std::atan2(rest.y, rest.x), turns_[i]);
-    }
-    for (std::size_t i = 0; i < skeleton_.bones.size(); ++i) {
-      if (!skeleton_.IsBone(static_cast<int>(i))) continue;
-      const int before = skeleton_.bones[i].before;
-      const auto b = static_cast<std::size_t>(before);
-      if (lifted_) {
-        const Quaternion local =
-            before == kNone ? world_[i] : Product(Inverse(world_[b]), world_[i]);
-        angles_[i] = AnglesZxy(local, angles_[i]);
-      } else {
-        angles_[i] = {before == kNone ? turns_[i] : turns_[i] - turns_[b], 0, 0};
-      }
-    }
-    return angles_;
-  }
-
- private:
-  const Skeleton& skeleton_;
-  bool lifted_;
-  std::vector<Quaternion> world_;  // from the rest pose, of each bone
-  std::vector<double> turns_;      // the same in the plane, about z
-  std::vector<Angles> angles_;     // from the bone before
-};
 
 // Where the neck stands: its way from where it mostly is.
 class NeckPath {
@@ -138,12 +95,7 @@ Status WriteBvh(const Motion& motion, const std::string& path, const FormatOptio
   const LengthQuantile median = [](const Bone&) { return 0.5; };
   const Result<Skeleton> skeleton = MakeSkeleton(motion, options, lifted ? LiftedQuantile : median);
   if (!skeleton.ok()) return skeleton.status();
-  const std::size_t bones = skeleton->bones.size();
-  std::vector<Vector3> spans;
-  for (std::int64_t t = 0; t < motion.frames; ++t) {
-    for (int i = 0; i < static_cast<int>(bones); ++i)
-      spans.push_back(skeleton->IsBone(i) ? Span(*skeleton, *motion.body, t, i) : Vector3{});
-  }
+  std::vector<Vector3> spans = SpansOf(*skeleton, motion);
   if (lifted) Lift(*skeleton, motion.frames, &spans);
 
   Result<TextFile> file = TextFile::Create(path);
@@ -157,7 +109,7 @@ Status WriteBvh(const Motion& motion, const std::string& path, const FormatOptio
   const NeckPath neck(motion, *skeleton);
   for (std::int64_t t = 0; t < motion.frames; ++t) {
     const std::vector<Angles>& angles =
-        poser.Next(spans.data() + static_cast<std::size_t>(t) * bones);
+        poser.Next(&spans[static_cast<std::size_t>(t) * skeleton->bones.size()]);
     const Vector3 place = neck.Place(t);
     std::string row = Numbers({place.x, place.y, place.z});
     for (const Joint& joint : skeleton->joints) {

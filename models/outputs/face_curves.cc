@@ -47,6 +47,13 @@ bool FaceCurves::HasUnits() const { return Any(units_); }
 
 bool FaceCurves::HasHead() const { return Any(angles_); }
 
+// Camera axes (x right, y down, z away) are the model's (x its left, y up, z to the viewer) turned
+// by half a turn about x.
+Quaternion HeadRotation(const FaceCurves& face, std::int64_t frame) {
+  return Product(AboutAxis(0, face.Angle(frame, 0)),
+                 Product(AboutAxis(1, -face.Angle(frame, 1)), AboutAxis(2, -face.Angle(frame, 2))));
+}
+
 double FaceCurves::Weight(std::int64_t frame, int unit) const {
   return std::clamp(Unit(frame, unit) / 5.0, 0.0, 1.0);
 }

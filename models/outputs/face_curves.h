@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "models/outputs/motion.h"
+#include "models/outputs/rotations.h"
 
 namespace gestus::outputs {
 
@@ -41,6 +42,9 @@ class FaceCurves {
   std::array<std::optional<std::size_t>, 100> units_;
   std::array<std::optional<std::size_t>, 3> angles_;
 };
+
+/// How the head turns, in the face's own axes: x its left, y up, z to the viewer.
+Quaternion HeadRotation(const FaceCurves& face, std::int64_t frame);
 
 }  // namespace gestus::outputs
 

@@ -11,8 +11,9 @@ namespace gestus::outputs {
 namespace {
 
 // In the order of the enumeration.
-constexpr std::array<const char*, 10> kNames = {"openpose", "openface", "openface2", "csv", "bvh",
-                                                "bvh3d",    "arkit",    "vrm",       "fap", "bap"};
+constexpr std::array<const char*, 11> kNames = {"openpose", "openface", "openface2", "csv",
+                                                "bvh",      "bvh3d",    "arkit",     "vrm",
+                                                "vrma",     "fap",      "bap"};
 
 // Larger values are no motion, and would overflow on the way to a file.
 constexpr float kMost = 1e9f;
@@ -85,6 +86,8 @@ Status Write(const Motion& motion, Format format, const std::string& path,
       return WriteArkit(motion, path);
     case Format::kVrm:
       return WriteVrm(motion, path);
+    case Format::kVrma:
+      return WriteVrma(motion, path);
     case Format::kFap:
       return WriteFap(motion, path, options);
     case Format::kBap:

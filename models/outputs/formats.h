@@ -24,6 +24,7 @@ enum class Format {
   kBvh3d,      ///< "bvh3d": arms bent out of that plane, by a guess
   kArkit,      ///< "arkit": CSV of Live Link Face, 52 blendshapes and rotations
   kVrm,        ///< "vrm": JSON, weights of expressions and the rotation of the head
+  kVrma,       ///< "vrma": VRM Animation, binary glTF: arms, head and expressions
   kFap,        ///< "fap": MPEG-4 face animation of Greta
   kBap,        ///< "bap": MPEG-4 body animation of Greta, the head
 };
@@ -56,7 +57,7 @@ struct FormatOptions {
 ///
 /// Errors: a motion without frames, with values that are no numbers or of sizes that do not fit;
 /// one that has nothing of what the format holds (a body for kOpenPose and BVH, action units or
-/// head angles for the others); a path that cannot be written.  They begin with the path.
+/// head angles for the others, arms or any of these for kVrma); a path that cannot be written.  They begin with the path.
 Status WriteMotion(const Motion& motion, Format format, const std::string& path,
                    const FormatOptions& options = {});
 

@@ -153,6 +153,15 @@ Vector3 Span(const Skeleton& skeleton, const Figure& body, std::int64_t frame, i
   return {end.x - begin.x, end.y - begin.y, 0};
 }
 
+std::vector<Vector3> SpansOf(const Skeleton& skeleton, const Motion& motion) {
+  std::vector<Vector3> spans;
+  for (std::int64_t t = 0; t < motion.frames; ++t) {
+    for (int i = 0; i < std::ssize(skeleton.bones); ++i)
+      spans.push_back(skeleton.IsBone(i) ? Span(skeleton, *motion.body, t, i) : Vector3{});
+  }
+  return spans;
+}
+
 Result<Skeleton> MakeSkeleton(const Motion& motion, const FormatOptions& options,
                               LengthQuantile quantile) {
   const Figure& body = *motion.body;

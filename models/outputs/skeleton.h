@@ -47,6 +47,9 @@ struct Skeleton {
 /// Where bone `bone` ends as seen from where it begins, in the plane: x right, y up, z 0; cm.
 Vector3 Span(const Skeleton& skeleton, const Figure& body, std::int64_t frame, int bone);
 
+/// Of every bone in every frame, (frames, bones); the neck's is 0.
+std::vector<Vector3> SpansOf(const Skeleton& skeleton, const Motion& motion);
+
 /// `quantile` of the lengths of a bone over the clip: 0.5 the median.
 using LengthQuantile = double (*)(const Bone&);
 

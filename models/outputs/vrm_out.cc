@@ -6,20 +6,12 @@
 
 #include "models/outputs/blendshapes.h"
 #include "models/outputs/face_curves.h"
-#include "models/outputs/rotations.h"
 #include "models/outputs/writers.h"
 
 namespace gestus::outputs {
 namespace {
 
 constexpr int kDigits = 6;
-
-// Camera axes (x right, y down, z away) are the model's (x its left, y up, z to the viewer) turned
-// by half a turn about x.
-Quaternion Head(const FaceCurves& face, std::int64_t frame) {
-  return Product(AboutAxis(0, face.Angle(frame, 0)),
-                 Product(AboutAxis(1, -face.Angle(frame, 1)), AboutAxis(2, -face.Angle(frame, 2))));
-}
 
 }  // namespace
 
@@ -49,7 +41,7 @@ Status WriteVrm(const Motion& motion, const std::string& path) {
   }
   GESTUS_RETURN_IF_ERROR(file->Add("],\n\"head\":["));
   for (std::int64_t t = 0; t < motion.frames; ++t) {
-    const Quaternion q = Head(face, t);
+    const Quaternion q = HeadRotation(face, t);
     std::string row = t == 0 ? "\n[" : ",\n[";
     for (const double value : {q.x, q.y, q.z, q.w}) {
       if (row.back() != '[') row += ',';

@@ -22,6 +22,7 @@ Status WriteBvh(const Motion& motion, const std::string& path, const FormatOptio
                 bool lifted);
 Status WriteArkit(const Motion& motion, const std::string& path);
 Status WriteVrm(const Motion& motion, const std::string& path);
+Status WriteVrma(const Motion& motion, const std::string& path);
 Status WriteFap(const Motion& motion, const std::string& path, const FormatOptions& options);
 Status WriteBap(const Motion& motion, const std::string& path, const FormatOptions& options);
 

@@ -10,6 +10,7 @@ import json
 import os
 import pathlib
 import shutil
+import struct
 import subprocess
 import sys
 import tempfile
@@ -142,6 +143,57 @@ def assimp_places(path, folder):
 
     walk(scene["rootnode"], [np.eye(4)] * frames)
     return result, animation["tickspersecond"]
+
+
+class Vrma:
+    """Reads a binary glTF with the extension VRMC_vrm_animation."""
+
+    def __init__(self, path):
+        data = pathlib.Path(path).read_bytes()
+        assert data[:4] == b"glTF" and struct.unpack_from("<II", data, 4) == (2, len(data))
+        length, kind = struct.unpack_from("<I4s", data, 12)
+        assert kind == b"JSON" and length % 4 == 0
+        self.json = json.loads(data[20:20 + length])
+        size, kind = struct.unpack_from("<I4s", data, 20 + length)
+        self.binary = data[28 + length:]
+        assert kind == b"BIN\0" and size == len(self.binary) == self.json["buffers"][0]["byteLength"]
+        meaning = self.json["extensions"]["VRMC_vrm_animation"]
+        assert meaning["specVersion"] == "1.0"
+        self.nodes = {name: bone["node"] for name, bone in
+                      [*meaning["humanoid"]["humanBones"].items(), *meaning["expressions"]["custom"].items()]}
+        self.tracks = {}
+        animation, = self.json["animations"]
+        for channel in animation["channels"]:
+            sampler = animation["samplers"][channel["sampler"]]
+            self.times = self.accessor(sampler["input"])[:, 0]
+            name = next(n for n, i in self.nodes.items() if i == channel["target"]["node"])
+            self.tracks[name, channel["target"]["path"]] = self.accessor(sampler["output"])
+
+    def accessor(self, index):
+        accessor = self.json["accessors"][index]
+        assert accessor["componentType"] == 5126
+        view = self.json["bufferViews"][accessor["bufferView"]]
+        width = {"SCALAR": 1, "VEC3": 3, "VEC4": 4}[accessor["type"]]
+        values = np.frombuffer(self.binary, "<f4", accessor["count"] * width, view["byteOffset"])
+        assert values.nbytes == view["byteLength"]
+        if "max" in accessor:
+            assert accessor["min"] == [values.min()] and np.float32(accessor["max"][0]) == values.max()
+        return values.reshape(-1, width).astype(np.float64)
+
+    def turned(self, bone, vector):
+        """(frames, 3): `vector` turned by the rotation of `bone`."""
+        return np.array([matrix_of(w, x, y, z) @ vector for x, y, z, w in self.tracks[bone, "rotation"]])
+
+
+def assimp_rotations(path, folder):
+    """{node: (frames, 4), x y z w} of a glTF, as assimp understands it."""
+    shutil.copy(path, pathlib.Path(folder) / "scene.glb")
+    made = pathlib.Path(folder) / "scene.json"
+    subprocess.run(["assimp", "export", str(pathlib.Path(folder) / "scene.glb"), str(made), "-fassjson"],
+                   check=True, timeout=60, stdout=subprocess.DEVNULL)
+    animation, = json.loads(made.read_text(encoding="utf-8"))["animations"]
+    return {c["name"]: np.array([[*k[1][1:], k[1][0]] for k in c["rotationkeys"]])
+            for c in animation["channels"]}
 
 
 def read_greta(path, parameters):
@@ -326,9 +378,10 @@ class Export(unittest.TestCase):
             unit = spans / np.linalg.norm(spans, axis=1, keepdims=True) * [1, -1]
             np.testing.assert_allclose(got, unit, atol=1e-4)
 
-    def test_bvh_lifted(self):
-        """Arms in space, seen from the front: the picture comes back exactly, the depth by its signs."""
-        frames, joints = 200, list(range(7))
+    @staticmethod
+    def arms():
+        """(200, 3, 7): arms in space that swing before the body, y up."""
+        frames = 200
         time = np.arange(frames)[:, None] / 15
         space = np.zeros((frames, 3, 7))
         for side, shoulder in ((-1, 1), (1, 4)):
@@ -345,6 +398,11 @@ class Export(unittest.TestCase):
         for side, shoulder in ((-1, 1), (1, 4)):
             space[:20, :, shoulder + 1] = space[:20, :, shoulder] + [side * 220, 0, 0]
             space[:20, :, shoulder + 2] = space[:20, :, shoulder + 1] + [side * 200, 0, 0]
+        return space
+
+    def test_bvh_lifted(self):
+        """Arms seen from the front: the picture comes back exactly, the depth by its signs."""
+        space, joints = self.arms(), list(range(7))
         points = space[:, :2] * [[[1], [-1]]]
         out = self.export("bvh3d", "space.bvh", ["rate 24", *self.body(joints)], points)
         want = space * 18 / 167
@@ -391,6 +449,47 @@ class Export(unittest.TestCase):
             rx, ry, rz = map(float, values[i, 6:])
             expected = camera @ turn("X", rx) @ turn("Y", ry) @ turn("Z", rz) @ camera
             np.testing.assert_allclose(matrix_of(w, x, y, z), expected, atol=1e-5)
+
+    def test_vrma_of_a_face(self):
+        values = self.curves(30)
+        vrma = Vrma(self.export("vrma", "f.vrma", ["rate 24", *(f"curve {c}" for c in CURVES)], values))
+        np.testing.assert_allclose(vrma.times, np.arange(30) / 24, atol=1e-6)
+        for column, unit in enumerate((1, 2, 4, 5, 6, 7)):
+            for shape in SHAPES_OF[unit]:
+                track = vrma.tracks[shape[0].lower() + shape[1:], "translation"]
+                np.testing.assert_allclose(track[:, 0], values[:, column] / 5, atol=1e-6)
+                self.assertTrue((track[:, 1:] == 0).all())
+        camera = np.diag([1, -1, -1])
+        want = np.array([camera @ turn("X", rx) @ turn("Y", ry) @ turn("Z", rz) @ camera @ [0.1, 0.2, 1]
+                         for rx, ry, rz in values[:, 6:].astype(np.float64)])
+        np.testing.assert_allclose(vrma.turned("head", [0.1, 0.2, 1]), want, atol=1e-5)
+
+    def test_vrma_of_a_body(self):
+        """Its bones point where those of the lifted BVH do, which another reader has computed."""
+        points, joints = self.arms()[:, :2] * [[[1], [-1]]], list(range(8))
+        nose = self.rng.normal(0, 0.1, 200).cumsum()
+        points = np.concatenate([points, np.stack([100 * np.sin(nose), -100 * np.cos(nose)], 1)[:, :, None]], 2)
+        spec = ["rate 15", *self.body(joints)]
+        places = Bvh(self.export("bvh3d", "b.bvh", spec, points)).places()
+        path = self.export("vrma", "b.vrma", spec, points)
+        vrma = Vrma(path)
+        required = {"hips", "spine", "head", *(side + bone for side in ("left", "right") for bone in (
+            "UpperArm", "LowerArm", "Hand", "UpperLeg", "LowerLeg", "Foot"))}
+        self.assertEqual(set(vrma.nodes), required)
+        for side, first, rest in (("left", "L", 1.0), ("right", "R", -1.0)):
+            upper = places[first + "Elbow"] - places[first + "Shoulder"]
+            fore = places[first + "Wrist"] - places[first + "Elbow"]
+            got = vrma.turned(side + "UpperArm", [rest, 0, 0])
+            np.testing.assert_allclose(got, upper / np.linalg.norm(upper, axis=1, keepdims=True), atol=1e-4)
+            local = vrma.turned(side + "LowerArm", [rest, 0, 0])
+            got = np.array([matrix_of(w, x, y, z) @ v for (x, y, z, w), v in
+                            zip(vrma.tracks[side + "UpperArm", "rotation"], local)])
+            np.testing.assert_allclose(got, fore / np.linalg.norm(fore, axis=1, keepdims=True), atol=1e-4)
+        np.testing.assert_allclose(vrma.turned("head", [0, 1, 0])[:, :2],
+                                   np.stack([np.sin(nose), np.cos(nose)], 1), atol=1e-5)
+        if shutil.which("assimp"):
+            for node, rotations in assimp_rotations(path, self.folder).items():
+                np.testing.assert_allclose(rotations, vrma.tracks[node, "rotation"], atol=1e-5)
 
     def test_greta(self):
         values = self.curves(49)

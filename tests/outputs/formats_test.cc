@@ -102,7 +102,7 @@ Motion Talking(std::int64_t frames, double rate = 24) {
 }
 
 TEST_F(FormatsTest, NamesAreKnownBothWays) {
-  EXPECT_EQ(FormatNames().size(), 10u);
+  EXPECT_EQ(FormatNames().size(), 11u);
   for (const std::string& name : FormatNames()) {
     const Result<Format> format = FormatOf(name);
     ASSERT_TRUE(format.ok()) << name;
@@ -114,7 +114,7 @@ TEST_F(FormatsTest, NamesAreKnownBothWays) {
           .status()
           .message(),
       "format \"f\\x1bbx\" is unknown, expected one of openpose, openface, openface2, csv, bvh, "
-      "bvh3d, arkit, vrm, fap, bap");
+      "bvh3d, arkit, vrm, vrma, fap, bap");
 }
 
 // Written, read by our own reader and laid out again: the motion, within a thousandth of a pixel of
@@ -191,9 +191,17 @@ TEST_F(FormatsTest, EveryFormatIsRefusedWhereItHasNothingToSay) {
             "the motion has no action units of brows, lids or cheeks, which the format fap needs");
   EXPECT_EQ(Refusal(figure, Format::kBap),
             "the motion has no head angles, which the format bap needs");
+  Motion torso = figure;
+  torso.body->points[5].source = torso.body->points[2].source = 1;
+  torso.body->points[6].source = torso.body->points[3].source = 1;
+  torso.body->points[7].source = 1;
+  EXPECT_EQ(Refusal(torso, Format::kVrma),
+            "the motion has no arms and no nose, which the format vrma needs");
   Motion odd = face;
   for (Curve& curve : odd.curves->curves) curve.name = "?" + curve.name;
   EXPECT_FALSE(WriteMotion(odd, Format::kArkit, Path("odd.csv")).ok());
+  EXPECT_NE(Refusal(odd, Format::kVrma).find("no body, action units or head angles"),
+            std::string::npos);
   EXPECT_TRUE(WriteMotion(odd, Format::kCsv, Path("odd.csv")).ok());
 }
 
@@ -235,7 +243,8 @@ TEST_F(FormatsTest, OneFrameAndMissingJoints) {
   one.body->points = {{"RWrist", -1, 3}};
   one.body->values = {0, 0};  // a bone without length
   one.face.reset();
-  for (const Format format : {Format::kOpenPose, Format::kCsv, Format::kBvh, Format::kBvh3d}) {
+  for (const Format format :
+       {Format::kOpenPose, Format::kCsv, Format::kBvh, Format::kBvh3d, Format::kVrma}) {
     const std::string name = "one." + NameOf(format);
     EXPECT_TRUE(WriteMotion(one, format, Path(name)).ok());
     EXPECT_EQ(Text(name).find("nan"), std::string::npos);
@@ -243,7 +252,7 @@ TEST_F(FormatsTest, OneFrameAndMissingJoints) {
   EXPECT_TRUE(motion::ReadOpenPose(Path("one.openpose")).ok());
   const Motion talking = Talking(1);
   for (const Format format :
-       {Format::kOpenFace, Format::kArkit, Format::kVrm, Format::kFap, Format::kBap})
+       {Format::kOpenFace, Format::kArkit, Format::kVrm, Format::kVrma, Format::kFap, Format::kBap})
     EXPECT_TRUE(WriteMotion(talking, format, Path("one." + NameOf(format))).ok());
   Motion head = Talking(2);
   head.curves->curves = {{"pose_Ry", "rad", 0, 0}};
@@ -307,7 +316,7 @@ TEST_F(FormatsTest, AFolderIsReplacedOnlyByItsLike) {
 TEST_F(FormatsTest, AFileIsReplacedAndAFolderIsNot) {
   fs::create_directory(Path("folder"));
   for (const Format format : {Format::kOpenFace, Format::kCsv, Format::kArkit, Format::kVrm,
-                              Format::kFap, Format::kBap}) {
+                              Format::kVrma, Format::kFap, Format::kBap}) {
     EXPECT_TRUE(WriteMotion(Talking(30), format, Path("out")).ok());
     EXPECT_TRUE(WriteMotion(Talking(2), format, Path("out")).ok());
     EXPECT_FALSE(WriteMotion(Talking(2), format, Path("folder")).ok());
