@@ -57,7 +57,8 @@ struct FormatOptions {
 ///
 /// Errors: a motion without frames, with values that are no numbers or of sizes that do not fit;
 /// one that has nothing of what the format holds (a body for kOpenPose and BVH, action units or
-/// head angles for the others, arms or any of these for kVrma); a path that cannot be written.  They begin with the path.
+/// head angles for the others, arms or any of these for kVrma); a path that cannot be written. They
+/// begin with the path.
 Status WriteMotion(const Motion& motion, Format format, const std::string& path,
                    const FormatOptions& options = {});
 
