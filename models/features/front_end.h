@@ -2,8 +2,9 @@
 //
 //   auto front_end = FrontEnd::Make(file, "zs_mstm1", {});
 //   Account account;
-//   auto stream = (*front_end)->Open({.audio = "speech.wav", .transcript = "words.json"},
-//   &account); while (true) {
+//   auto stream =
+//       (*front_end)->Open({.audio = "speech.wav", .transcript = "words.json"}, &account);
+//   while (true) {
 //     auto inputs = (*stream)->Next(64);            // arrays as infer-cli takes them
 //     if (!inputs.ok() || inputs->empty()) break;
 //     network->Run(*inputs, ...);
@@ -30,7 +31,7 @@ namespace gestus::features {
 /// What there is of one recording; every part may be absent.
 struct Recording {
   std::string audio;       ///< path of a recording
-  std::string transcript;  ///< path of words with times, or of plain text
+  std::string transcript;  ///< path of words with times, or of plain text, which is spread evenly
   std::string openpose;    ///< path of a folder of OpenPose's files, or of one
   double pose_rate = 0;  ///< frames per second of openpose; 0: as the audio's length says, else 15
   models::Arrays arrays{};  ///< inputs of the network that are there already
@@ -38,6 +39,10 @@ struct Recording {
 
   bool Any() const { return !audio.empty() || !transcript.empty() || !openpose.empty(); }
 };
+
+/// The words of `recording`, which has some; those of plain text are spread over its audio.  Notes
+/// go to the account; errors begin with the path.
+Result<words::Transcript> ReadWords(const Recording& recording, Account* account);
 
 class FrontEnd {
  public:
