@@ -35,13 +35,14 @@ struct Inputs {
   std::string openface;            ///< CSV
   std::vector<std::string> notes;  ///< files in folders that were not used
 
-  bool OnlyArrays() const {
-    return audio.empty() && transcript.empty() && openpose.empty() && openface.empty();
-  }
+  /// Whether there is something that speech can be made of.
+  bool Spoken() const { return !audio.empty() || !transcript.empty(); }
+  bool OnlyArrays() const { return !Spoken() && openpose.empty() && openface.empty(); }
 };
 
 /// Sorts `paths`; a folder stands for the files in it.  `transcript` (may be empty) is one whatever
-/// it looks like.
+/// it looks like.  A text file without times is a transcript only where it is named itself.  An
+/// error when nothing is found.
 Result<Inputs> SortInputs(const std::vector<std::string>& paths, const std::string& transcript);
 
 }  // namespace gestus::cli
