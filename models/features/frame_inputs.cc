@@ -108,7 +108,7 @@ Status FrameInputs::CountFrames() {
   if (seconds > 3600 * kMaxHours)
     return Status(Code::kBadInput, sources_.transcript_path + ": the last word ends after " +
                                        Significant(seconds / 3600, 4) +
-                                       " hours, expected at most " + Significant(kMaxHours, 4) +
+                                       " hours, expected at most " + Significant(kMaxHours, 3) +
                                        " without a recording");
   total_ = std::max<std::int64_t>(1, std::llround(std::ceil(seconds * spec_.frame_rate - 1e-6)));
   return Status();

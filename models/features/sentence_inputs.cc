@@ -53,7 +53,7 @@ Result<std::unique_ptr<SentenceInputs>> SentenceInputs::Open(const FeatureSpec& 
     inputs->times_ms_.push_back(Milliseconds(sentence.end));
   }
   if (inputs->ids_.empty()) return Status(Code::kBadInput, path + ": has no words, expected some");
-  account->used.push_back(Describe(transcript, path) + " -> " +
+  account->used.push_back(Describe(transcript, path) + " -> ids, " +
                           (spec.classifies ? Count(inputs->ids_.size(), "sentence")
                                            : Count(inputs->ids_[0].size(), "piece")));
   if (shortened > 0)
