@@ -30,9 +30,9 @@ namespace gestus::features {
 
 /// What there is of one recording; every part may be absent.
 struct Recording {
-  std::string audio;       ///< path of a recording
-  std::string transcript;  ///< path of words with times, or of plain text, which is spread evenly
-  std::string openpose;    ///< path of a folder of OpenPose's files, or of one
+  std::string audio{};       ///< path of a recording
+  std::string transcript{};  ///< path of words with times, or of plain text, which is spread evenly
+  std::string openpose{};    ///< path of a folder of OpenPose's files, or of one
   double pose_rate = 0;  ///< frames per second of openpose; 0: as the audio's length says, else 15
   models::Arrays arrays{};  ///< inputs of the network that are there already
   std::string arrays_path{};

@@ -13,8 +13,9 @@ constexpr double kPace = 15;
 // A table that no reader knows is no prose; a text may name some numbers.
 constexpr std::size_t kWordsForANumber = 4;
 
-bool HasDigit(std::string_view word) {
-  return std::any_of(word.begin(), word.end(), [](char c) { return c >= '0' && c <= '9'; });
+bool IsNumber(std::string_view word) {
+  return word.find_first_of("0123456789") != std::string_view::npos &&
+         word.find_first_not_of("0123456789.,:;+-") == std::string_view::npos;
 }
 
 bool IsControl(char c) {
@@ -33,7 +34,7 @@ bool LooksLikePlainText(std::string_view text) {
   for (const std::string_view word : SplitAtSpace(text, text.size())) {
     if (IsOnlyPunctuation(word)) continue;
     ++spoken;
-    numbers += HasDigit(word);
+    numbers += IsNumber(word);
   }
   return spoken > 0 && numbers * kWordsForANumber <= spoken;
 }
