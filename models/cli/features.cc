@@ -38,6 +38,7 @@ Status AddNetworkInputs(const Arguments& arguments, const Inputs& inputs,
   if (!made.ok()) return made.status();
   arrays->merge(*made);
   arrays->merge((*stream)->Beside());
+  for (std::string& note : (*stream)->Notes()) account->notes.push_back(std::move(note));
   return Status();
 }
 

@@ -158,6 +158,10 @@ Status ReadStyle(const Arguments& arguments, const Inputs& inputs, const Setup& 
 Result<Feed> OpenFeed(const Arguments& arguments, const Inputs& inputs, const Setup& setup) {
   Feed feed;
   if (!inputs.Spoken() && inputs.arrays.empty()) return NothingToSay(arguments, inputs);
+  if (inputs.arrays.empty() && arguments.style.empty() && HasStyle(setup))
+    return Status(Code::kInvalidArgument,
+                  "command line: no --style, expected a .style file, or a folder with a speaker's "
+                  "recording, words and poses");
   Result<std::unique_ptr<features::FrontEnd>> front_end = MakeFrontEnd(setup);
   if (!front_end.ok()) return front_end.status();
   if (!inputs.arrays.empty()) {

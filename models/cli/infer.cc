@@ -123,6 +123,7 @@ Result<Arrays> RunAll(const Arguments& arguments, Setup* setup, Feed* feed,
     done += count;
   }
   outputs.merge(feed->stream->Beside());
+  for (std::string& note : feed->stream->Notes()) feed->account.notes.push_back(std::move(note));
   return outputs;
 }
 

@@ -87,7 +87,6 @@ Status FrameInputs::OpenSpeech(Account* account) {
   speech_.emplace(*std::move(rows));
   account->used.push_back(sources_.audio + ": " + speech_->Description() + " -> speech, " +
                           Count(static_cast<std::uint64_t>(speech_->total()), "frame"));
-  account->notes.insert(account->notes.end(), speech_->notes().begin(), speech_->notes().end());
   return Status();
 }
 
@@ -182,6 +181,10 @@ Status FrameInputs::PlaceWords(Account* account) {
                           " -> text, by the BERT of the weights file");
   account->notes.insert(account->notes.end(), plan->notes.begin(), plan->notes.end());
   return Status();
+}
+
+std::vector<std::string> FrameInputs::Notes() const {
+  return speech_ ? speech_->notes() : std::vector<std::string>();
 }
 
 Status FrameInputs::ReadSpeech(std::int64_t count, std::vector<float>* rows) {

@@ -39,6 +39,7 @@ class FrameInputs final : public InputStream {
   std::int64_t total() const override { return total_; }
   std::int64_t unit() const override { return spec_.frames; }
   Result<models::Arrays> Next(std::int64_t count) override;
+  std::vector<std::string> Notes() const override;
 
  private:
   FrameInputs(const FeatureSpec& spec, FrameSources sources)

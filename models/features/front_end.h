@@ -8,7 +8,7 @@
 //     auto inputs = (*stream)->Next(64);            // arrays as infer-cli takes them
 //     if (!inputs.ok() || inputs->empty()) break;
 //     network->Run(*inputs, ...);
-//   }
+//   }                                               // (*stream)->Notes() is complete now
 //   auto clip = (*front_end)->StyleClip({.audio = ..., .transcript = ..., .openpose = "poses/"},
 //                                       &account); // style_speech, style_text, style_pose, ...
 #ifndef GESTUS_MODELS_FEATURES_FRONT_END_H_

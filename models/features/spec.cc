@@ -1,5 +1,6 @@
 #include "models/features/spec.h"
 
+#include <charconv>
 #include <tuple>
 
 #include "models/config.h"
@@ -15,7 +16,17 @@ constexpr std::int64_t kLastJoint = 51, kLastLandmark = 69;
 
 using models::ConfigReader;
 
-double Number(ConfigReader& read, const char* field, double value, double low, double high) {
+// The number that was meant: 0.01 rather than the float next to it, which would make f0 drift.
+double Decimal(float value) {
+  char digits[32];
+  const char* end = std::to_chars(digits, digits + sizeof digits, value).ptr;
+  double decimal = value;
+  std::from_chars(digits, end, decimal);
+  return decimal;
+}
+
+double Number(ConfigReader& read, const char* field, float stored, double low, double high) {
+  const double value = Decimal(stored);
   if (!(value >= low && value <= high))
     read.Fail(field, Significant(value, 6), Significant(low, 6) + " to " + Significant(high, 6));
   return value;
@@ -39,7 +50,7 @@ void ReadZsMstm(const fb::ZsMstm1Config& c, FeatureSpec* spec) {
                      : c.frames();
   spec->mel_bins = c.ast_content()->mel_bins();
   spec->d_text = c.d_text();
-  spec->frame_rate = c.frame_rate();
+  spec->frame_rate = Decimal(c.frame_rate());
   spec->pose_source =
       c.pose_source() == fb::PoseSource::Data ? PoseSource::kData : PoseSource::kNormalize;
 }

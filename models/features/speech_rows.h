@@ -39,14 +39,15 @@ class SpeechRows {
   SpeechRows(Samples samples, const FeatureSpec& spec)
       : samples_(std::move(samples)), spec_(spec) {}
   Status MakeStage();
-  Status CountRows(double seconds);
+  void CountRows(double seconds);
+  std::int64_t ExactRow(std::int64_t frame) const;
   std::int64_t RowOf(std::int64_t frame) const;
   Status Fill(std::int64_t row);
 
   Samples samples_;
   FeatureSpec spec_;
   std::unique_ptr<audio::Stage> stage_;
-  audio::RowPlan exact_, pats_;
+  audio::RowPlan exact_, pats_;  // exact_ counts thousandths of frames
   std::vector<float> made_;     // rows of the last piece
   std::vector<float> pending_;  // rows first_pending_ and on
   std::int64_t first_pending_ = 0;

@@ -86,6 +86,7 @@ Status FrontEnd::AddSpeechAndText(const Recording& recording, const words::Trans
   if (!stream.ok()) return stream.status();
   Result<Arrays> frames = (*stream)->Next((*stream)->total());
   if (!frames.ok()) return frames.status();
+  for (std::string& note : (*stream)->Notes()) account->notes.push_back(std::move(note));
   (*clip)["style_speech"] = std::move(frames->at("speech"));
   (*clip)["style_text"] = std::move(frames->at("text"));
   return Status();

@@ -109,8 +109,10 @@ Status WordInputs::MakeItemsOfSound(Account* account) {
                   (sources_.transcript_path.empty() ? "input" : sources_.transcript_path) +
                       ": neither a recording nor words, expected one of them");
   const double length = static_cast<double>(spec_.f0_length) * spec_.pitch_hop;
-  for (double start = 0; start < pitch_.seconds; start += length)
-    items_.push_back({"", start, std::min(start + length, pitch_.seconds)});
+  const double count = std::max(1.0, std::ceil(pitch_.seconds / length - 1e-6));
+  for (double i = 0; i < count; ++i)
+    items_.push_back(
+        {"", i * length, std::max(i * length, std::min((i + 1) * length, pitch_.seconds))});
   units_.push_back({0, items_.size()});
   sources_.encoder = nullptr;
   account->notes.push_back("f0: no words, the recording was cut into words of " +

@@ -86,6 +86,19 @@ TEST(SpeechRowsTest, RowsOfPatsGoOnByTheirStrideWithinASegment) {
   }
 }
 
+TEST(SpeechRowsTest, FramesNeedNotBeWholeInASecond) {
+  const TempFolder folder;
+  const std::string path = WriteWav(folder, "a.wav", Voice(60, 8000), 8000);
+  FeatureSpec spec = FramesSpec();
+  spec.frame_rate = 29.97;
+  std::int64_t total = 0;
+  const std::vector<float> got = Read(path, spec, {500}, &total);
+  EXPECT_EQ(total, 1798);
+  std::vector<std::int64_t> which;
+  for (int i = 0; i < 1798; ++i) which.push_back(Nearest(i / 29.97 * 8000 / 512));
+  EXPECT_TRUE(got == Pick(LogMel(path, spec), 10, which));
+}
+
 TEST(SpeechRowsTest, AnyPiecesGiveTheSameRows) {
   const TempFolder folder;
   const std::string path = WriteWav(folder, "a.wav", Voice(7.1, 44100), 44100, 2);
