@@ -30,7 +30,7 @@ struct Inputs {
   std::string weights;             ///< for `infer-cli features` alone
   std::string arrays;              ///< .npz or .npy
   std::string audio;               ///< WAV, or what libsndfile reads
-  std::string transcript;          ///< words with times
+  std::string transcript;          ///< words with times, or plain text
   std::string openpose;            ///< a folder of JSON files, or one of them
   std::string openface;            ///< CSV
   std::vector<std::string> notes;  ///< files in folders that were not used
