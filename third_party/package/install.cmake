@@ -20,11 +20,12 @@ function(gestus_install_pkgconfig name template)
   install(FILES ${CMAKE_BINARY_DIR}/${name}.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 endfunction()
 
-# A front end: a library of its own, so that who wants the networks alone needs nothing of it.  Of
-# its headers those that are named here are for everybody; the rest are its inside.
+# What lies before and behind the networks: each part a library of its own, so that who wants the
+# networks alone needs nothing of it.  Of its headers those that are named here are for everybody; the
+# rest are its inside.
 #
-#   gestus_install_front_end(audio "Sound" REQUIRES gestus-io HEADERS source stage)
-function(gestus_install_front_end part description)
+#   gestus_install_part(audio "Sound" REQUIRES gestus-io HEADERS source stage)
+function(gestus_install_part part description)
   if(NOT TARGET gestus_${part})
     return()
   endif()
@@ -39,9 +40,9 @@ endfunction()
 foreach(part kernels engine models)
   gestus_install_library(${part})
 endforeach()
-set(front_ends audio cli features io motion prosody text words)
+set(parts audio cli features io motion outputs prosody text words)
 file(GLOB headers RELATIVE ${CMAKE_SOURCE_DIR} engine/*.h models/*.h models/*/*.h)
-foreach(folder IN LISTS front_ends)
+foreach(folder IN LISTS parts)
   list(FILTER headers EXCLUDE REGEX "^models/${folder}/")
 endforeach()
 gestus_install_headers(kernels/kernels.h ${headers})
@@ -50,20 +51,21 @@ gestus_install_pkgconfig(gestus gestus)
 if(GESTUS_SNDFILE_LIBRARY)
   set(sndfile sndfile)
 endif()
-gestus_install_front_end(io "Files and numbers, for the other parts" REQUIRES gestus)
-gestus_install_front_end(text "Words to the tokens of BERT" REQUIRES gestus libutf8proc
-                         HEADERS vocabulary wordpiece)
-gestus_install_front_end(audio "Recordings to what the networks hear" REQUIRES gestus-io ${sndfile}
-                         HEADERS fbank frames log_mel resampler rows source stage)
-gestus_install_front_end(prosody "Recordings to pitch and voice quality" REQUIRES gestus-audio
-                         HEADERS contour swipe voice_quality)
-gestus_install_front_end(words "Transcripts to words in time" REQUIRES gestus-io
-                         HEADERS frames transcript units)
-gestus_install_front_end(motion "Key points and action units to poses" REQUIRES gestus-io
-                         HEADERS clean clip joints openface openpose resample select)
-gestus_install_front_end(features "Recordings and words to the inputs of a network"
-                         REQUIRES gestus-text gestus-prosody gestus-words gestus-motion
-                         HEADERS front_end input_stream spec stages word_encoder)
+gestus_install_part(io "Files and numbers, for the other parts" REQUIRES gestus)
+gestus_install_part(text "Words to the tokens of BERT" REQUIRES gestus libutf8proc
+                    HEADERS vocabulary wordpiece)
+gestus_install_part(audio "Recordings to what the networks hear" REQUIRES gestus-io ${sndfile}
+                    HEADERS fbank frames log_mel resampler rows source stage)
+gestus_install_part(prosody "Recordings to pitch and voice quality" REQUIRES gestus-audio
+                    HEADERS contour swipe voice_quality)
+gestus_install_part(words "Transcripts to words in time" REQUIRES gestus-io
+                    HEADERS frames transcript units)
+gestus_install_part(motion "Key points and action units to poses" REQUIRES gestus-io
+                    HEADERS clean clip joints openface openpose resample select)
+gestus_install_part(features "Recordings and words to the inputs of a network"
+                    REQUIRES gestus-text gestus-prosody gestus-words gestus-motion
+                    HEADERS front_end input_stream spec stages word_encoder)
+gestus_install_part(outputs "What networks put out, as motion" REQUIRES gestus-motion HEADERS motion)
 
 set(package ${CMAKE_INSTALL_LIBDIR}/cmake/gestus)
 install(EXPORT gestus NAMESPACE gestus:: FILE gestusTargets.cmake DESTINATION ${package})
