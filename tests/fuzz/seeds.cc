@@ -114,7 +114,7 @@ void AddTexts(Folder* folder) {
 }
 
 void WriteAll(const fs::path& goldens, const fs::path& to) {
-  Folder(to / "weights").AddCopies(goldens, ".fb");
+  for (const char* name : {"weights", "front_end"}) Folder(to / name).AddCopies(goldens, ".fb");
   Folder npz(to / "npz");
   npz.AddCopies(goldens, ".npz");
   AddArrays(&npz);

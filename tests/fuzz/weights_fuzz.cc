@@ -1,15 +1,14 @@
 // Weights files: opened, their networks made, planned and run once.  Sizes and checksum in the
 // header are made to fit, or they would stop everything.
 #include <cmath>
-#include <cstring>
 
 #include "engine/weights_file.h"
 #include "models/features/spec.h"
 #include "models/features/word_encoder.h"
 #include "models/run_support.h"
 #include "models/self_test.h"
-#include "tests/engine/weights_builder.h"
 #include "tests/fuzz/fuzz.h"
+#include "tests/fuzz/weights_bytes.h"
 
 namespace gestus::fuzz {
 namespace {
@@ -73,39 +72,8 @@ void Use(const std::shared_ptr<const WeightsFile>& file) {
   }
 }
 
-// The header's sizes and checksum as the file's length and content ask for.
-void MendHeader(test::Bytes* bytes) {
-  if (bytes->size() < test::kMetadataAt) return;
-  const std::uint64_t size = bytes->size();
-  const auto metadata = test::Get<std::uint64_t>(*bytes, test::kMetadataSizeAt);
-  if (metadata <= size - test::kMetadataAt) {
-    const std::uint64_t data_begin = (test::kMetadataAt + metadata + 63) / 64 * 64;
-    test::Put(bytes, test::kFileSizeAt, size);
-    if (data_begin <= size) test::Put(bytes, test::kDataSizeAt, size - data_begin);
-  }
-  test::RefreshChecksum(bytes);
-}
-
 }  // namespace
 }  // namespace gestus::fuzz
-
-extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t max_size);
-
-// Weights may be any numbers, and a FlatBuffer with a byte more is none: most of the time it is
-// better to change numbers of the metadata in their places.
-extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
-                                               std::size_t max_size, unsigned seed) {
-  using gestus::test::kMetadataAt;
-  std::uint64_t metadata = 0;
-  if (size > kMetadataAt)
-    std::memcpy(&metadata, data + gestus::test::kMetadataSizeAt, sizeof metadata);
-  if (seed % 8 == 0 || metadata < 8 || metadata > size - kMetadataAt)
-    return LLVMFuzzerMutate(data, size, max_size);
-  const std::size_t width = std::size_t{1} << (seed / 8) % 4;
-  const std::size_t at = (seed / 32) % (metadata / width) * width;
-  LLVMFuzzerMutate(data + kMetadataAt + at, width, width);
-  return size;
-}
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace gestus;  // NOLINT: this is a test of that library
