@@ -6,6 +6,13 @@
 #include "weights_generated.h"
 
 namespace gestus::models {
+namespace {
+
+// More than any network takes.  One value of a small file would otherwise be widened to gigabytes
+// for who asks before the network's configuration was checked.
+constexpr std::int64_t kMaxColumns = 1 << 16;
+
+}  // namespace
 
 Value Normalisation::Apply(Graph& g, Value x) const {
   if (mean.empty()) return x;
@@ -34,6 +41,9 @@ Result<Normalisation> ReadNormalisation(const fb::Network& network, const std::s
       return Status(Code::kBadWeights, "network " + network.name()->str() + ": normalisation of " +
                                            stream + ": " + what);
     };
+    if (columns < 1 || columns > kMaxColumns)
+      return error(std::to_string(columns) + " columns, expected 1 to " +
+                   std::to_string(kMaxColumns));
     const std::size_t size = n->mean()->size();
     if (n->deviation()->size() != size || (size != 1 && size != static_cast<std::size_t>(columns)))
       return error(std::to_string(size) + " means and " + std::to_string(n->deviation()->size()) +

@@ -28,6 +28,7 @@ struct Normalisation {
 };
 
 /// The normalisation of `stream` (D columns) in `network`, widened from one value to all columns.
+/// An error when there are 0 or more than 65536 of these.
 Result<Normalisation> ReadNormalisation(const fb::Network& network, const std::string& stream,
                                         std::int64_t columns);
 

@@ -3,12 +3,10 @@
 #ifndef GESTUS_MODELS_AUDIO_FBANK_H_
 #define GESTUS_MODELS_AUDIO_FBANK_H_
 
-#include <vector>
+#include <cstddef>
+#include <memory>
 
 #include "engine/status.h"
-#include "models/audio/fft.h"
-#include "models/audio/framer.h"
-#include "models/audio/mel_bank.h"
 #include "models/audio/stage.h"
 
 namespace gestus::audio {
@@ -33,24 +31,21 @@ struct FbankOptions {
 class Fbank final : public Stage {
  public:
   static Result<Fbank> Make(const FbankOptions& options = {});
+  ~Fbank() override;
+  Fbank(Fbank&&) noexcept;
+  Fbank& operator=(Fbank&&) noexcept;
 
-  int width() const override { return options_.bins; }
+  int width() const override;
   std::size_t MaxRows(std::size_t samples) const override;
   std::size_t Push(const float* samples, std::size_t n, float* rows) override;
   std::size_t MaxRowsAtFinish() const override { return 0; }
   std::size_t Finish(float* rows) override;
 
  private:
-  Fbank(const FbankOptions& options, std::size_t frame, std::size_t hop, std::size_t fft_size,
-        MelBank bank);
-  void WriteRow(const float* frame, float* row);
+  struct State;
+  explicit Fbank(std::unique_ptr<State> state);
 
-  FbankOptions options_;
-  MelBank bank_;
-  RealFft<double> fft_;
-  Framer framer_;
-  std::size_t hop_;
-  std::vector<double> window_, frame_, power_, sums_;
+  std::unique_ptr<State> state_;
 };
 
 }  // namespace gestus::audio

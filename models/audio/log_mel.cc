@@ -5,7 +5,11 @@
 #include <numbers>
 #include <string>
 #include <utility>
+#include <vector>
 
+#include "models/audio/fft.h"
+#include "models/audio/framer.h"
+#include "models/audio/mel_bank.h"
 #include "models/audio/rates.h"
 
 namespace gestus::audio {
@@ -68,108 +72,136 @@ LogMelOptions PatsLogMel400() {
           .floor = 1e-6};
 }
 
-Result<LogMel> LogMel::Make(const LogMelOptions& options) {
-  GESTUS_RETURN_IF_ERROR(Check(options));
-  const double rate = options.sample_rate;
-  return LogMel(options, MelBank::Slaney({.sample_rate = rate,
-                                          .fft_size = Size(options.fft_size),
-                                          .filters = Size(options.mels),
-                                          .f_min = options.f_min,
-                                          .f_max = options.f_max == 0 ? rate / 2 : options.f_max},
-                                         options.slaney_norm));
-}
+struct LogMel::State {
+  State(const LogMelOptions& with, MelBank mels);
+  std::size_t Width() const { return sums.size(); }
+  /// Each adds samples and returns where the next row goes.
+  float* Append(const float* samples, std::size_t n, float* rows);
+  float* AppendShort(float* rows);
+  void WriteRow(const float* from, float* row);
 
-LogMel::LogMel(const LogMelOptions& options, MelBank bank)
-    : options_(options),
-      bank_(std::move(bank)),
-      fft_(Size(options.fft_size)),
-      framer_(Size(options.fft_size), Size(options.hop)),
-      window_(Size(options.fft_size)),
-      frame_(Size(options.fft_size)),
-      power_(fft_.bins()),
-      sums_(bank_.filters()) {
+  LogMelOptions options;
+  MelBank bank;
+  RealFft<double> fft;
+  Framer framer;
+  std::vector<double> window, frame, power, sums;
+  std::vector<float> head;  // a centred recording's first samples, until they can be mirrored
+  std::size_t head_size = 0;
+  std::vector<float> mirrored;
+};
+
+LogMel::State::State(const LogMelOptions& with, MelBank mels)
+    : options(with),
+      bank(std::move(mels)),
+      fft(Size(with.fft_size)),
+      framer(Size(with.fft_size), Size(with.hop)),
+      window(Size(with.fft_size)),
+      frame(Size(with.fft_size)),
+      power(fft.bins()),
+      sums(bank.filters()) {
   const std::size_t before = Size((options.fft_size - options.window_size) / 2);
   for (std::size_t i = 0; i < Size(options.window_size); ++i) {
-    window_[before + i] =
+    window[before + i] =
         0.5 - 0.5 * std::cos(2 * std::numbers::pi * static_cast<double>(i) / options.window_size);
   }
   if (options.center) {
-    mirrored_.resize(Size(options.fft_size / 2));
-    head_.resize(mirrored_.size() + 1);
+    mirrored.resize(Size(options.fft_size / 2));
+    head.resize(mirrored.size() + 1);
   }
 }
 
-void LogMel::WriteRow(const float* frame, float* row) {
-  for (std::size_t i = 0; i < frame_.size(); ++i) {
-    frame_[i] = window_[i] * static_cast<double>(frame[i]);
+void LogMel::State::WriteRow(const float* from, float* row) {
+  for (std::size_t i = 0; i < frame.size(); ++i) {
+    frame[i] = window[i] * static_cast<double>(from[i]);
   }
-  fft_.Power(frame_.data(), power_.data());
-  if (!options_.power) {
-    for (double& p : power_) p = std::sqrt(p);
+  fft.Power(frame.data(), power.data());
+  if (!options.power) {
+    for (double& p : power) p = std::sqrt(p);
   }
-  bank_.Apply(power_.data(), sums_.data());
-  for (std::size_t k = 0; k < sums_.size(); ++k) {
+  bank.Apply(power.data(), sums.data());
+  for (std::size_t k = 0; k < sums.size(); ++k) {
     // librosa's sums are float32: what underflows there counts as zero.
-    const double sum = static_cast<float>(sums_[k]);
-    row[k] = static_cast<float>(std::log(sum == 0 ? options_.floor : sum));
+    const double sum = static_cast<float>(sums[k]);
+    row[k] = static_cast<float>(std::log(sum == 0 ? options.floor : sum));
   }
 }
 
-float* LogMel::Append(const float* samples, std::size_t n, float* rows) {
-  framer_.Push(samples, n, [&](const float* frame) {
-    WriteRow(frame, rows);
-    rows += options_.mels;
+float* LogMel::State::Append(const float* samples, std::size_t n, float* rows) {
+  framer.Push(samples, n, [&](const float* from) {
+    WriteRow(from, rows);
+    rows += Width();
   });
   return rows;
 }
 
-std::size_t LogMel::MaxRows(std::size_t samples) const {
-  return samples == 0 ? 0 : 1 + samples / Size(options_.hop);
-}
-
-std::size_t LogMel::Push(const float* samples, std::size_t n, float* rows) {
-  float* end = rows;
-  if (head_size_ < head_.size()) {
-    const std::size_t take = std::min(n, head_.size() - head_size_);
-    std::copy_n(samples, take, head_.data() + head_size_);
-    head_size_ += take;
-    samples += take;
-    n -= take;
-    if (head_size_ < head_.size()) return 0;
-    std::reverse_copy(head_.begin() + 1, head_.end(), mirrored_.begin());
-    end = Append(mirrored_.data(), mirrored_.size(), end);
-    end = Append(head_.data(), head_.size(), end);
-  }
-  end = Append(samples, n, end);
-  return static_cast<std::size_t>(end - rows) / Size(options_.mels);
-}
-
-std::size_t LogMel::MaxRowsAtFinish() const {
-  return options_.center ? 1 + mirrored_.size() / Size(options_.hop) : 0;
-}
-
-// All rows of a recording that ended before it filled head_.
-float* LogMel::AppendShort(float* rows) {
-  const auto n = static_cast<std::ptrdiff_t>(head_size_);
-  const auto pad = static_cast<std::ptrdiff_t>(mirrored_.size());
+// All rows of a recording that ended before it filled the head.
+float* LogMel::State::AppendShort(float* rows) {
+  const auto n = static_cast<std::ptrdiff_t>(head_size);
+  const auto pad = static_cast<std::ptrdiff_t>(mirrored.size());
   for (std::ptrdiff_t i = -pad; n > 0 && i < n + pad; ++i) {
-    rows = Append(&head_[Mirror(i, head_size_)], 1, rows);
+    rows = Append(&head[Mirror(i, head_size)], 1, rows);
   }
   return rows;
 }
 
-std::size_t LogMel::Finish(float* rows) {
+Result<LogMel> LogMel::Make(const LogMelOptions& options) {
+  GESTUS_RETURN_IF_ERROR(Check(options));
+  const double rate = options.sample_rate;
+  return LogMel(std::make_unique<State>(
+      options, MelBank::Slaney({.sample_rate = rate,
+                                .fft_size = Size(options.fft_size),
+                                .filters = Size(options.mels),
+                                .f_min = options.f_min,
+                                .f_max = options.f_max == 0 ? rate / 2 : options.f_max},
+                               options.slaney_norm)));
+}
+
+LogMel::LogMel(std::unique_ptr<State> state) : state_(std::move(state)) {}
+LogMel::~LogMel() = default;
+LogMel::LogMel(LogMel&&) noexcept = default;
+LogMel& LogMel::operator=(LogMel&&) noexcept = default;
+
+int LogMel::width() const { return state_->options.mels; }
+
+std::size_t LogMel::MaxRows(std::size_t samples) const {
+  return samples == 0 ? 0 : 1 + samples / Size(state_->options.hop);
+}
+
+std::size_t LogMel::Push(const float* samples, std::size_t n, float* rows) {
+  State& s = *state_;
   float* end = rows;
-  if (head_size_ < head_.size()) {
-    end = AppendShort(rows);
-  } else if (options_.center) {
-    const float* last = framer_.end() - 1;
-    std::reverse_copy(last - mirrored_.size(), last, mirrored_.begin());
-    end = Append(mirrored_.data(), mirrored_.size(), end);
+  if (s.head_size < s.head.size()) {
+    const std::size_t take = std::min(n, s.head.size() - s.head_size);
+    std::copy_n(samples, take, s.head.data() + s.head_size);
+    s.head_size += take;
+    samples += take;
+    n -= take;
+    if (s.head_size < s.head.size()) return 0;
+    std::reverse_copy(s.head.begin() + 1, s.head.end(), s.mirrored.begin());
+    end = s.Append(s.mirrored.data(), s.mirrored.size(), end);
+    end = s.Append(s.head.data(), s.head.size(), end);
   }
-  framer_.Clear();
-  head_size_ = 0;
-  return static_cast<std::size_t>(end - rows) / Size(options_.mels);
+  end = s.Append(samples, n, end);
+  return static_cast<std::size_t>(end - rows) / s.Width();
+}
+
+std::size_t LogMel::MaxRowsAtFinish() const {
+  return state_->options.center ? 1 + state_->mirrored.size() / Size(state_->options.hop) : 0;
+}
+
+std::size_t LogMel::Finish(float* rows) {
+  State& s = *state_;
+  float* end = rows;
+  if (s.head_size < s.head.size()) {
+    end = s.AppendShort(rows);
+  } else if (s.options.center) {
+    const float* last = s.framer.end() - 1;
+    std::reverse_copy(last - s.mirrored.size(), last, s.mirrored.begin());
+    end = s.Append(s.mirrored.data(), s.mirrored.size(), end);
+  }
+  s.framer.Clear();
+  s.head_size = 0;
+  return static_cast<std::size_t>(end - rows) / s.Width();
 }
 
 }  // namespace gestus::audio

@@ -3,12 +3,10 @@
 #ifndef GESTUS_MODELS_AUDIO_LOG_MEL_H_
 #define GESTUS_MODELS_AUDIO_LOG_MEL_H_
 
-#include <vector>
+#include <cstddef>
+#include <memory>
 
 #include "engine/status.h"
-#include "models/audio/fft.h"
-#include "models/audio/framer.h"
-#include "models/audio/mel_bank.h"
 #include "models/audio/stage.h"
 
 namespace gestus::audio {
@@ -41,27 +39,21 @@ LogMelOptions PatsLogMel400();
 class LogMel final : public Stage {
  public:
   static Result<LogMel> Make(const LogMelOptions& options);
+  ~LogMel() override;
+  LogMel(LogMel&&) noexcept;
+  LogMel& operator=(LogMel&&) noexcept;
 
-  int width() const override { return options_.mels; }
+  int width() const override;
   std::size_t MaxRows(std::size_t samples) const override;
   std::size_t Push(const float* samples, std::size_t n, float* rows) override;
   std::size_t MaxRowsAtFinish() const override;
   std::size_t Finish(float* rows) override;
 
  private:
-  LogMel(const LogMelOptions& options, MelBank bank);
-  float* Append(const float* samples, std::size_t n, float* rows);
-  float* AppendShort(float* rows);
-  void WriteRow(const float* frame, float* row);
+  struct State;
+  explicit LogMel(std::unique_ptr<State> state);
 
-  LogMelOptions options_;
-  MelBank bank_;
-  RealFft<double> fft_;
-  Framer framer_;
-  std::vector<double> window_, frame_, power_, sums_;
-  std::vector<float> head_;  // a centred recording's first samples, until they can be mirrored
-  std::size_t head_size_ = 0;
-  std::vector<float> mirrored_;
+  std::unique_ptr<State> state_;
 };
 
 }  // namespace gestus::audio

@@ -36,7 +36,8 @@ void AddCompute(CLI::App* app, Arguments* a) {
 
 // What recordings need to be said of.
 void AddRecording(CLI::App* app, Arguments* a) {
-  app->add_option("--words", a->words, "Transcript with times, where INPUT does not hold it")
+  app->add_option("--words", a->words,
+                  "Transcript, with times or plain text, where INPUT does not hold it")
       ->type_name("FILE");
   app->add_option("--pose-fps", a->pose_rate,
                   "Frames per second of OpenPose's files; default: as the recording's length says")

@@ -1,6 +1,8 @@
 // The stages that need no network, and the inputs of the network when a weights file is there.
 #include "models/cli/features.h"
 
+#include <algorithm>
+
 #include "models/cli/feed.h"
 #include "models/cli/inputs.h"
 #include "models/cli/json.h"
@@ -36,7 +38,17 @@ Status AddNetworkInputs(const Arguments& arguments, const Inputs& inputs,
   if (!made.ok()) return made.status();
   arrays->merge(*made);
   arrays->merge((*stream)->Beside());
+  for (std::string& note : (*stream)->Notes()) account->notes.push_back(std::move(note));
   return Status();
+}
+
+/// What is read both as a stage and for the network is odd both times.
+void DropRepeated(std::vector<std::string>* notes) {
+  std::vector<std::string> kept;
+  for (std::string& note : *notes) {
+    if (std::find(kept.begin(), kept.end(), note) == kept.end()) kept.push_back(std::move(note));
+  }
+  *notes = std::move(kept);
 }
 
 std::string Text(const Arguments& arguments, const Arrays& arrays,
@@ -84,12 +96,8 @@ Status RunFeatures(const Arguments& arguments) {
   if (!file.ok()) return file.status().In(arguments.output);
   Result<Arrays> arrays = features::Stages(recording, inputs->openface, spec, &account);
   if (!arrays.ok()) return arrays.status();
-  // The contour of f0 keeps its name; what Model 1 and Model 2 take has a row for each word.
-  if (const auto words = network_inputs.find("f0"); words != network_inputs.end()) {
-    (*arrays)["f0_words"] = std::move(words->second);
-    network_inputs.erase(words);
-  }
   arrays->merge(network_inputs);
+  DropRepeated(&account.notes);
   GESTUS_RETURN_IF_ERROR(WriteNpz(*arrays, &*file).In(arguments.output));
   GESTUS_RETURN_IF_ERROR(file->Commit().In(arguments.output));
   return Print(arguments.json ? Json(arguments, *arrays, account)

@@ -47,12 +47,12 @@ Result<Arrays> ReadArrays(const Arguments& arguments, const Inputs& inputs, cons
                           features::Account* account) {
   std::vector<ArraySpec> wanted;
   for (ArraySpec spec : setup.network->signature().inputs) {
-    spec.required = spec.required && inputs.OnlyArrays();
+    spec.required = spec.required && !inputs.Spoken();
     if (arguments.style.empty() || !IsStyleInput(spec.name)) wanted.push_back(spec);
   }
   Result<NpzContents> file = ReadNpz(inputs.arrays, wanted);
   if (!file.ok()) return file.status();
-  if (inputs.OnlyArrays()) GESTUS_RETURN_IF_ERROR(CheckAnyInput(wanted, *file).In(inputs.arrays));
+  if (!inputs.Spoken()) GESTUS_RETURN_IF_ERROR(CheckAnyInput(wanted, *file).In(inputs.arrays));
   for (const std::string& name : file->others)
     account->notes.push_back(name + " in " + inputs.arrays + " was not used");
   if (!file->arrays.empty())
@@ -72,7 +72,19 @@ void NoteUnused(const Inputs& inputs, features::Account* account) {
   if (!inputs.weights.empty())
     account->notes.push_back(inputs.weights + " was not used: the weights file comes first");
   if (!inputs.openface.empty())
-    account->notes.push_back(inputs.openface + " was not used: no network takes a face as input");
+    account->notes.push_back(inputs.openface +
+                             " was not used: OpenFace's features are no input of a network");
+}
+
+/// The error of a run without anything that could be said.
+Status NothingToSay(const Arguments& arguments, const Inputs& inputs) {
+  const char* expected = ", expected a recording, words or arrays";
+  if (!inputs.openface.empty())
+    return Status(Code::kBadInput,
+                  inputs.openface + ": OpenFace's features are no input of a network" + expected);
+  if (!inputs.openpose.empty())
+    return Status(Code::kBadInput, inputs.openpose + ": poses belong to a --style" + expected);
+  return Status(Code::kBadInput, arguments.Input() + ": nothing to be said" + expected);
 }
 
 models::NetworkOptions OptionsOf(const Setup& setup) {
@@ -103,7 +115,7 @@ Result<Setup> OpenNetworkFor(const Arguments& arguments, const Inputs& inputs) {
           names = *std::move(listed);
         }
         if (!arguments.style.empty()) names.push_back("style");
-        if (inputs.OnlyArrays()) return names;
+        if (!inputs.Spoken()) return names;
         const Result<features::FeatureSpec> spec = features::ReadFeatureSpec(network);
         if (!spec.ok()) return spec.status();
         for (std::string& name : features::FrontEnd::Makes(*spec, RecordingOf(inputs, arguments)))
@@ -145,6 +157,11 @@ Status ReadStyle(const Arguments& arguments, const Inputs& inputs, const Setup& 
 
 Result<Feed> OpenFeed(const Arguments& arguments, const Inputs& inputs, const Setup& setup) {
   Feed feed;
+  if (!inputs.Spoken() && inputs.arrays.empty()) return NothingToSay(arguments, inputs);
+  if (inputs.arrays.empty() && arguments.style.empty() && HasStyle(setup))
+    return Status(Code::kInvalidArgument,
+                  "command line: no --style, expected a .style file, or a folder with a speaker's "
+                  "recording, words and poses");
   Result<std::unique_ptr<features::FrontEnd>> front_end = MakeFrontEnd(setup);
   if (!front_end.ok()) return front_end.status();
   if (!inputs.arrays.empty()) {
@@ -163,7 +180,7 @@ Result<Feed> OpenFeed(const Arguments& arguments, const Inputs& inputs, const Se
     for (const std::string& note : account.notes)
       feed.account.notes.push_back(note.starts_with("style") ? note : "style: " + note);
   }
-  feed.only_arrays = inputs.OnlyArrays();
+  feed.only_arrays = !inputs.Spoken();
   if (feed.only_arrays) {
     feed.stream = std::make_unique<ReadyArrays>(feed.arrays);
     return feed;

@@ -60,6 +60,14 @@ void Append(Arrays&& from, Arrays* into) {
   }
 }
 
+/// Says which file an array of the network's complaint came from.
+Status Blame(const Arguments& arguments, const Status& status) {
+  const std::string& message = status.message();
+  const bool from_style =
+      !arguments.style.empty() && IsStyleInput(message.substr(0, message.find(':')));
+  return status.In(from_style ? arguments.style : arguments.Input());
+}
+
 /// A clip becomes a style once, before the speech runs in stretches.
 Status TakeStyle(const Arguments& arguments, Setup* setup, models::RunReport* report,
                  Arrays* style) {
@@ -68,7 +76,7 @@ Status TakeStyle(const Arguments& arguments, Setup* setup, models::RunReport* re
   options.threads = arguments.threads;
   models::RunReport own;
   Result<Arrays> made = setup->network->Run(*style, options, &own);
-  if (!made.ok()) return made.status().In(arguments.style);
+  if (!made.ok()) return Blame(arguments, made.status());
   report->notes.insert(report->notes.end(), own.notes.begin(), own.notes.end());
   *style = {{"style", std::move(made->at("style"))}};
   return Status();
@@ -82,14 +90,6 @@ models::RunOptions OptionsOf(const Arguments& arguments) {
   options.profile = arguments.profile;
   options.taps = arguments.taps;
   return options;
-}
-
-/// Says which file an array of the network's complaint came from.
-Status Blame(const Arguments& arguments, const Status& status) {
-  const std::string& message = status.message();
-  const bool from_style =
-      !arguments.style.empty() && IsStyleInput(message.substr(0, message.find(':')));
-  return status.In(from_style ? arguments.style : arguments.Input());
 }
 
 /// Runs the network over all that the stream gives.
@@ -124,6 +124,7 @@ Result<Arrays> RunAll(const Arguments& arguments, Setup* setup, Feed* feed,
     done += count;
   }
   outputs.merge(feed->stream->Beside());
+  for (std::string& note : feed->stream->Notes()) feed->account.notes.push_back(std::move(note));
   return outputs;
 }
 

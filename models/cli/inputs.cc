@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "models/io/file.h"
+#include "models/words/transcript.h"
 
 namespace gestus::cli {
 namespace {
@@ -43,6 +44,11 @@ Result<std::vector<std::string>> NamesIn(const std::string& path) {
   return names;
 }
 
+bool HasFrames(const std::vector<std::string>& names) {
+  return std::any_of(names.begin(), names.end(),
+                     [](const std::string& name) { return name.ends_with(kKeypoints); });
+}
+
 Result<std::string> Head(const std::string& path) {
   Result<InputFile> file = OpenInput(path);
   if (!file.ok()) return file.status().In(path);
@@ -62,6 +68,13 @@ bool IsAudio(std::string_view head) {
   return head.size() > 1 && static_cast<unsigned char>(head[0]) == 0xff &&
          (static_cast<unsigned char>(head[1]) & 0xe0U) == 0xe0U && head[1] != '\xfe' &&
          head[1] != '\xff';
+}
+
+bool HasAudioEnding(const std::string& path) {
+  for (const char* ending : {".wav", ".WAV", ".flac", ".mp3", ".ogg", ".opus", ".aiff"}) {
+    if (path.ends_with(ending)) return true;
+  }
+  return false;
 }
 
 InputKind KindOfText(std::string_view head) {
@@ -127,23 +140,52 @@ Status Put(const std::string& path, InputKind kind, Inputs* inputs) {
   return Status();
 }
 
-/// What people keep beside recordings.
-bool IsProse(const std::string& name) {
-  for (const char* end : {".md", ".pdf", ".html", ".log", ".wav.asd", ".lab"}) {
-    if (name.ends_with(end)) return true;
+}  // namespace
+
+Result<InputKind> Recognise(const std::string& path) {
+  if (IsFolder(path)) {
+    const Result<std::vector<std::string>> names = NamesIn(path);
+    if (!names.ok()) return names.status();
+    return HasFrames(*names) ? InputKind::kOpenPose : InputKind::kFolder;
   }
-  return name.starts_with("README") || name.starts_with("LICENSE") || name.starts_with("LICENCE") ||
-         name.starts_with("COPYING");
+  const Result<std::string> head = Head(path);
+  if (!head.ok()) return head.status();
+  // These names promise arrays, so that their reader complains of what is none; and an empty file
+  // is what its name says.
+  if (path.ends_with(".npz") || path.ends_with(".npy")) return InputKind::kArrays;
+  if (head->empty() && HasAudioEnding(path)) return InputKind::kAudio;
+  if (head->starts_with("GESTUSW")) return InputKind::kWeights;
+  if (head->starts_with("PK") || head->starts_with("\x93NUMPY")) return InputKind::kArrays;
+  if (IsAudio(*head)) return InputKind::kAudio;
+  const bool utf16 = head->starts_with("\xff\xfe") || head->starts_with("\xfe\xff");
+  if (!utf16 && head->find('\0') != std::string::npos) return InputKind::kUnknown;
+  return KindOfText(*head);
+}
+
+namespace {
+
+/// The kind of a file that a folder holds, where text is one only if it has times.
+Result<InputKind> RecogniseInFolder(const std::string& path) {
+  const Result<InputKind> kind = Recognise(path);
+  if (!kind.ok()) return kind.status();
+  if (*kind == InputKind::kFolder) return InputKind::kUnknown;
+  if (*kind != InputKind::kTranscript) return kind;
+  const Result<std::string> head = Head(path);
+  if (!head.ok()) return head.status();
+  return words::LooksTimed(*head) ? InputKind::kTranscript : InputKind::kUnknown;
 }
 
 Status PutFolder(const std::string& path, Inputs* inputs) {
   const Result<std::vector<std::string>> names = NamesIn(path);
   if (!names.ok()) return names.status();
+  const bool frames = HasFrames(*names);
+  if (frames) GESTUS_RETURN_IF_ERROR(Put(path, InputKind::kOpenPose, inputs));
   for (const std::string& name : *names) {
+    if (frames && name.ends_with(kKeypoints)) continue;
     const std::string file = path + (path.ends_with('/') ? "" : "/") + name;
-    Result<InputKind> kind = IsProse(name) ? InputKind::kUnknown : Recognise(file);
+    const Result<InputKind> kind = RecogniseInFolder(file);
     if (!kind.ok()) return kind.status();
-    if (*kind == InputKind::kUnknown || *kind == InputKind::kFolder) {
+    if (*kind == InputKind::kUnknown) {
       inputs->notes.push_back(file + " was not used");
       continue;
     }
@@ -154,42 +196,23 @@ Status PutFolder(const std::string& path, Inputs* inputs) {
 
 }  // namespace
 
-Result<InputKind> Recognise(const std::string& path) {
-  if (IsFolder(path)) {
-    const Result<std::vector<std::string>> names = NamesIn(path);
-    if (!names.ok()) return names.status();
-    const bool frames = std::any_of(names->begin(), names->end(), [](const std::string& name) {
-      return name.ends_with(kKeypoints);
-    });
-    return frames ? InputKind::kOpenPose : InputKind::kFolder;
-  }
-  const Result<std::string> head = Head(path);
-  if (!head.ok()) return head.status();
-  // These names promise arrays, so that their reader complains of what is none; and an empty file
-  // is what its name says.
-  if (path.ends_with(".npz") || path.ends_with(".npy")) return InputKind::kArrays;
-  if (head->empty() && path.ends_with(".wav")) return InputKind::kAudio;
-  if (head->starts_with("GESTUSW")) return InputKind::kWeights;
-  if (head->starts_with("PK") || head->starts_with("\x93NUMPY")) return InputKind::kArrays;
-  if (IsAudio(*head)) return InputKind::kAudio;
-  const bool utf16 = head->starts_with("\xff\xfe") || head->starts_with("\xfe\xff");
-  if (!utf16 && head->find('\0') != std::string::npos) return InputKind::kUnknown;
-  return KindOfText(*head);
-}
-
 Result<Inputs> SortInputs(const std::vector<std::string>& paths, const std::string& transcript) {
   Inputs inputs;
   inputs.transcript = transcript;
   for (const std::string& path : paths) {
     if (path == transcript) continue;
+    if (IsFolder(path)) {
+      GESTUS_RETURN_IF_ERROR(PutFolder(path, &inputs));
+      continue;
+    }
     const Result<InputKind> kind = Recognise(path);
     if (!kind.ok()) return kind.status();
-    if (*kind == InputKind::kFolder) {
-      GESTUS_RETURN_IF_ERROR(PutFolder(path, &inputs));
-    } else {
-      GESTUS_RETURN_IF_ERROR(Put(path, *kind, &inputs));
-    }
+    GESTUS_RETURN_IF_ERROR(Put(path, *kind, &inputs));
   }
+  if (inputs.OnlyArrays() && inputs.arrays.empty() && inputs.weights.empty())
+    return Status(Code::kBadInput, paths.front() +
+                                       ": nothing in it can be used, expected a recording, a "
+                                       "transcript, key points or arrays");
   return inputs;
 }
 

@@ -30,18 +30,19 @@ struct Inputs {
   std::string weights;             ///< for `infer-cli features` alone
   std::string arrays;              ///< .npz or .npy
   std::string audio;               ///< WAV, or what libsndfile reads
-  std::string transcript;          ///< words with times
+  std::string transcript;          ///< words with times, or plain text
   std::string openpose;            ///< a folder of JSON files, or one of them
   std::string openface;            ///< CSV
   std::vector<std::string> notes;  ///< files in folders that were not used
 
-  bool OnlyArrays() const {
-    return audio.empty() && transcript.empty() && openpose.empty() && openface.empty();
-  }
+  /// Whether there is something that speech can be made of.
+  bool Spoken() const { return !audio.empty() || !transcript.empty(); }
+  bool OnlyArrays() const { return !Spoken() && openpose.empty() && openface.empty(); }
 };
 
 /// Sorts `paths`; a folder stands for the files in it.  `transcript` (may be empty) is one whatever
-/// it looks like.
+/// it looks like.  A text file without times is a transcript only where it is named itself.  An
+/// error when nothing is found.
 Result<Inputs> SortInputs(const std::vector<std::string>& paths, const std::string& transcript);
 
 }  // namespace gestus::cli

@@ -22,10 +22,11 @@ double RateOf(std::int64_t frames, double seconds, Account* account) {
   const double nearest = *std::min_element(
       std::begin(kUsual), std::end(kUsual),
       [rate](double a, double b) { return std::abs(a - rate) < std::abs(b - rate); });
-  const double taken = std::abs(nearest / rate - 1) < kNear ? nearest : rate;
+  const double taken =
+      std::abs(nearest / rate - 1) < kNear ? nearest : std::clamp(rate, 1.0, 1000.0);
   account->notes.push_back("poses: taken for " + Significant(taken, 4) +
                            " frames per second, as the recording's length says");
-  return std::clamp(taken, 1.0, 1000.0);
+  return taken;
 }
 
 /// Cleaned and at the motion's rate.

@@ -13,12 +13,16 @@ namespace {
 using models::Array;
 using models::ArraySpec;
 
-Status CheckGiven(const models::Arrays& arrays, const char* name, std::int64_t columns) {
-  const auto found = arrays.find(name);
-  if (found == arrays.end()) return Status();
+// Nobody speaks longer at a stretch; a transcript that says so, with nothing beside it, is wrong.
+constexpr double kMaxHours = 100;
+
+Status CheckGiven(const FrameSources& sources, const char* name, std::int64_t columns) {
+  const auto found = sources.arrays.find(name);
+  if (found == sources.arrays.end()) return Status();
   return models::CheckArray(
-      models::Spec(name, {ArraySpec::kAny, columns}, {"frames", "columns"}, "-", ""),
-      found->second);
+             models::Spec(name, {ArraySpec::kAny, columns}, {"frames", "columns"}, "-", ""),
+             found->second)
+      .In(sources.arrays_path);
 }
 
 void AppendRows(const Array& array, std::int64_t first, std::int64_t count,
@@ -57,11 +61,16 @@ Result<std::unique_ptr<FrameInputs>> FrameInputs::Open(const FeatureSpec& spec,
                                                        const FrameSources& sources,
                                                        Account* account) {
   std::unique_ptr<FrameInputs> inputs(new FrameInputs(spec, sources));
-  GESTUS_RETURN_IF_ERROR(CheckGiven(sources.arrays, "speech", spec.mel_bins));
-  GESTUS_RETURN_IF_ERROR(CheckGiven(sources.arrays, "text", spec.d_text));
+  GESTUS_RETURN_IF_ERROR(CheckGiven(sources, "speech", spec.mel_bins));
+  if (spec.d_text > 0) GESTUS_RETURN_IF_ERROR(CheckGiven(sources, "text", spec.d_text));
   GESTUS_RETURN_IF_ERROR(inputs->OpenSpeech(account));
   GESTUS_RETURN_IF_ERROR(inputs->CountFrames());
-  if (spec.d_text > 0) GESTUS_RETURN_IF_ERROR(inputs->OpenText(account));
+  GESTUS_RETURN_IF_ERROR(inputs->CheckCounts());
+  if (spec.d_text > 0) {
+    GESTUS_RETURN_IF_ERROR(inputs->OpenText(account));
+  } else if (sources.transcript != nullptr) {
+    account->notes.push_back(sources.transcript_path + " was not used: the network takes no text");
+  }
   return inputs;
 }
 
@@ -78,7 +87,6 @@ Status FrameInputs::OpenSpeech(Account* account) {
   speech_.emplace(*std::move(rows));
   account->used.push_back(sources_.audio + ": " + speech_->Description() + " -> speech, " +
                           Count(static_cast<std::uint64_t>(speech_->total()), "frame"));
-  account->notes.insert(account->notes.end(), speech_->notes().begin(), speech_->notes().end());
   return Status();
 }
 
@@ -92,19 +100,42 @@ Status FrameInputs::CountFrames() {
       if (found != sources_.arrays.end()) total_ = found->second.shape[0];
     }
   }
-  const words::Transcript* transcript = sources_.transcript;
-  if (total_ == 0 && transcript != nullptr && !transcript->words.empty())
-    total_ = std::max<std::int64_t>(
-        1, std::llround(std::ceil(transcript->words.back().end * spec_.frame_rate - 1e-6)));
   if (total_ == 0) total_ = sources_.frames;
-  if (total_ == 0)
-    return Status(Code::kBadInput,
-                  (sources_.transcript_path.empty() ? "input" : sources_.transcript_path) +
-                      ": neither a recording nor words, expected one of them");
-  for (const auto& [name, array] : sources_.arrays) {
-    if (array.shape[0] != total_)
-      return Status(Code::kBadInput, name + ": " + std::to_string(array.shape[0]) +
-                                         " frames, expected " + std::to_string(total_));
+  if (total_ > 0) return Status();
+  if (!HasWords() || sources_.encoder == nullptr) return Nothing();
+  const double seconds = sources_.transcript->words.back().end;
+  if (seconds > 3600 * kMaxHours)
+    return Status(Code::kBadInput, sources_.transcript_path + ": the last word ends after " +
+                                       Significant(seconds / 3600, 4) +
+                                       " hours, expected at most " + Significant(kMaxHours, 3) +
+                                       " without a recording");
+  total_ = std::max<std::int64_t>(1, std::llround(std::ceil(seconds * spec_.frame_rate - 1e-6)));
+  return Status();
+}
+
+// The network takes text, and there are words for it.
+bool FrameInputs::HasWords() const {
+  return spec_.d_text > 0 && sources_.transcript != nullptr && !sources_.transcript->words.empty();
+}
+
+// Why nothing at all could be made.
+Status FrameInputs::Nothing() const {
+  const std::string where = sources_.transcript_path.empty() ? "input" : sources_.transcript_path;
+  const char* why = spec_.d_text == 0 || sources_.transcript == nullptr ? "no recording"
+                    : HasWords() ? "the weights file has no BERT for the words"
+                                 : "no words";
+  return Status(Code::kBadInput, where + ": " + why + ", expected a recording" +
+                                     (spec_.d_text == 0 || HasWords() ? "" : " or words"));
+}
+
+Status FrameInputs::CheckCounts() const {
+  for (const char* name : {"speech", "text"}) {
+    const auto found = sources_.arrays.find(name);
+    if (found == sources_.arrays.end() || found->second.shape[0] == total_) continue;
+    return Status(Code::kBadInput, std::string(name) + ": " +
+                                       std::to_string(found->second.shape[0]) +
+                                       " frames, expected " + std::to_string(total_))
+        .In(sources_.arrays_path);
   }
   return Status();
 }
@@ -117,12 +148,12 @@ Status FrameInputs::OpenText(Account* account) {
       account->notes.push_back(path + " was not used, text is there already");
     return Status();
   }
-  const bool words = transcript != nullptr && !transcript->words.empty();
-  if (!words || sources_.encoder == nullptr) {
+  if (!HasWords() || sources_.encoder == nullptr) {
     account->notes.push_back("text: " +
                              std::string(transcript == nullptr ? "no words"
-                                         : !words              ? "the transcript has no words"
-                                                  : "the weights file has no BERT for the words") +
+                                         : !HasWords()
+                                             ? "the transcript has no words"
+                                             : "the weights file has no BERT for the words") +
                              ", " + Absent(spec_.absent_text));
     return Status();
   }
@@ -150,6 +181,10 @@ Status FrameInputs::PlaceWords(Account* account) {
                           " -> text, by the BERT of the weights file");
   account->notes.insert(account->notes.end(), plan->notes.begin(), plan->notes.end());
   return Status();
+}
+
+std::vector<std::string> FrameInputs::Notes() const {
+  return speech_ ? speech_->notes() : std::vector<std::string>();
 }
 
 Status FrameInputs::ReadSpeech(std::int64_t count, std::vector<float>* rows) {

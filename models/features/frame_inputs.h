@@ -18,7 +18,8 @@ namespace gestus::features {
 /// What there is of one recording; whatever is absent is null or empty.
 struct FrameSources {
   models::Arrays arrays;  ///< "speech", "text": taken as they are
-  std::string audio;      ///< path
+  std::string arrays_path;
+  std::string audio;  ///< path
   const words::Transcript* transcript = nullptr;
   std::string transcript_path;
   WordEncoder* encoder = nullptr;  ///< null: the words cannot be made features
@@ -28,7 +29,8 @@ struct FrameSources {
 /// Streams "speech" (frames, mel bins) and, where the network has it, "text" (frames, d_text).
 ///
 /// Words are placed on frames as PATS does (features.md 5.4).  A modality that is absent is the
-/// mean of its statistics, or zeros where the network has none, and the account says so.
+/// mean of its statistics, or zeros where the network has none, and the account says so; an error
+/// when all are absent and no number of frames is given.
 class FrameInputs final : public InputStream {
  public:
   static Result<std::unique_ptr<FrameInputs>> Open(const FeatureSpec& spec,
@@ -37,12 +39,16 @@ class FrameInputs final : public InputStream {
   std::int64_t total() const override { return total_; }
   std::int64_t unit() const override { return spec_.frames; }
   Result<models::Arrays> Next(std::int64_t count) override;
+  std::vector<std::string> Notes() const override;
 
  private:
   FrameInputs(const FeatureSpec& spec, FrameSources sources)
       : spec_(spec), sources_(std::move(sources)) {}
   Status OpenSpeech(Account* account);
   Status CountFrames();
+  bool HasWords() const;
+  Status Nothing() const;
+  Status CheckCounts() const;
   Status OpenText(Account* account);
   Status PlaceWords(Account* account);
   Status ReadSpeech(std::int64_t count, std::vector<float>* rows);

@@ -42,6 +42,19 @@ Result<std::unique_ptr<FrontEnd>> FrontEnd::Make(std::shared_ptr<const WeightsFi
   return front_end;
 }
 
+Result<words::Transcript> ReadWords(const Recording& recording, Account* account) {
+  Result<words::Transcript> transcript =
+      words::ReadTranscript(recording.transcript, {.plain_text = true});
+  if (!transcript.ok()) return transcript;
+  if (transcript->plain_text && !recording.audio.empty()) {
+    const Result<double> seconds = SecondsOf(recording.audio);
+    if (!seconds.ok()) return seconds.status();
+    if (*seconds > 0) words::SpreadOver(*seconds, &*transcript);
+  }
+  account->notes.insert(account->notes.end(), transcript->notes.begin(), transcript->notes.end());
+  return transcript;
+}
+
 std::vector<std::string> FrontEnd::Makes(const FeatureSpec& spec, const Recording& recording) {
   const bool audio = !recording.audio.empty(), words = !recording.transcript.empty();
   if (!audio && !words) return {};
@@ -63,12 +76,10 @@ std::vector<std::string> FrontEnd::Makes(const FeatureSpec& spec, const Recordin
 Result<const words::Transcript*> FrontEnd::OpenTranscript(const Recording& recording,
                                                           Account* account) {
   if (recording.transcript.empty()) return nullptr;
-  Result<words::Transcript> transcript = words::ReadTranscript(recording.transcript);
+  Result<words::Transcript> transcript = ReadWords(recording, account);
   if (!transcript.ok()) return transcript.status();
   transcripts_.push_back(std::make_unique<words::Transcript>(*std::move(transcript)));
-  const words::Transcript& read = *transcripts_.back();
-  account->notes.insert(account->notes.end(), read.notes.begin(), read.notes.end());
-  return &read;
+  return transcripts_.back().get();
 }
 
 // Made when first wanted: the weights of BERT are many.
@@ -76,6 +87,7 @@ Result<WordEncoder*> FrontEnd::Encoder(Account* account) {
   if (encoder_) return &*encoder_;
   account->notes.insert(account->notes.end(), text_networks_.notes.begin(),
                         text_networks_.notes.end());
+  text_networks_.notes.clear();
   if (text_networks_.encoder.empty()) return nullptr;
   Result<TokenNetwork> network = TokenNetwork::Make(file_, text_networks_.encoder, options_);
   if (!network.ok()) return network.status();
@@ -112,6 +124,11 @@ Result<std::unique_ptr<InputStream>> FrontEnd::OpenSentences(const Recording& re
     return Status(Code::kBadInput, recording.audio + ": no words, expected a transcript for BERT");
   const Result<models::WordPiece> tokeniser = ReadTokeniser(*file_, *record_);
   if (!tokeniser.ok()) return tokeniser.status();
+  if (!recording.audio.empty())
+    account->notes.push_back(recording.audio + " was not used: the network takes words");
+  for (const auto& [name, array] : recording.arrays)
+    account->notes.push_back(name + " in " + recording.arrays_path +
+                             " was not used: it is made of the words");
   return Own(SentenceInputs::Open(spec_, *transcript, recording.transcript, *tokeniser, account));
 }
 
@@ -131,16 +148,16 @@ Result<std::unique_ptr<InputStream>> FrontEnd::Open(const Recording& recording, 
   if (spec_.layout == Layout::kFrames)
     return Own(FrameInputs::Open(spec_,
                                  {.arrays = recording.arrays,
+                                  .arrays_path = recording.arrays_path,
                                   .audio = recording.audio,
                                   .transcript = *transcript,
                                   .transcript_path = recording.transcript,
                                   .encoder = *encoder},
                                  account));
-  for (const auto& [name, array] : recording.arrays)
-    account->notes.push_back(name + " in " + recording.arrays_path +
-                             " was not used: words are made anew");
   return Own(WordInputs::Open(spec_,
-                              {.audio = recording.audio,
+                              {.arrays = recording.arrays,
+                               .arrays_path = recording.arrays_path,
+                               .audio = recording.audio,
                                .transcript = *transcript,
                                .transcript_path = recording.transcript,
                                .encoder = *encoder},

@@ -2,12 +2,13 @@
 //
 //   auto front_end = FrontEnd::Make(file, "zs_mstm1", {});
 //   Account account;
-//   auto stream = (*front_end)->Open({.audio = "speech.wav", .transcript = "words.json"},
-//   &account); while (true) {
+//   auto stream =
+//       (*front_end)->Open({.audio = "speech.wav", .transcript = "words.json"}, &account);
+//   while (true) {
 //     auto inputs = (*stream)->Next(64);            // arrays as infer-cli takes them
 //     if (!inputs.ok() || inputs->empty()) break;
 //     network->Run(*inputs, ...);
-//   }
+//   }                                               // (*stream)->Notes() is complete now
 //   auto clip = (*front_end)->StyleClip({.audio = ..., .transcript = ..., .openpose = "poses/"},
 //                                       &account); // style_speech, style_text, style_pose, ...
 #ifndef GESTUS_MODELS_FEATURES_FRONT_END_H_
@@ -29,15 +30,19 @@ namespace gestus::features {
 
 /// What there is of one recording; every part may be absent.
 struct Recording {
-  std::string audio;       ///< path of a recording
-  std::string transcript;  ///< path of words with times, or of plain text
-  std::string openpose;    ///< path of a folder of OpenPose's files, or of one
+  std::string audio{};       ///< path of a recording
+  std::string transcript{};  ///< path of words with times, or of plain text, which is spread evenly
+  std::string openpose{};    ///< path of a folder of OpenPose's files, or of one
   double pose_rate = 0;  ///< frames per second of openpose; 0: as the audio's length says, else 15
   models::Arrays arrays{};  ///< inputs of the network that are there already
   std::string arrays_path{};
 
   bool Any() const { return !audio.empty() || !transcript.empty() || !openpose.empty(); }
 };
+
+/// The words of `recording`, which has some; those of plain text are spread over its audio.  Notes
+/// go to the account; errors begin with the path.
+Result<words::Transcript> ReadWords(const Recording& recording, Account* account);
 
 class FrontEnd {
  public:

@@ -31,6 +31,8 @@ class InputStream {
   virtual Result<models::Arrays> Next(std::int64_t count) = 0;
   /// What belongs beside the outputs, such as the times of their items; complete behind the end.
   virtual models::Arrays Beside() const { return {}; }
+  /// What was odd about the recording, beside the account of Open(); complete behind the end.
+  virtual std::vector<std::string> Notes() const { return {}; }
 };
 
 /// "words.json: WhisperX JSON, 58 words"

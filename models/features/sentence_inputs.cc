@@ -52,10 +52,10 @@ Result<std::unique_ptr<SentenceInputs>> SentenceInputs::Open(const FeatureSpec& 
     inputs->times_ms_.push_back(Milliseconds(sentence.start));
     inputs->times_ms_.push_back(Milliseconds(sentence.end));
   }
-  if (inputs->ids_.empty())
-    return Status(Code::kBadInput, "ids: the transcript has no words, expected some");
-  account->used.push_back(Describe(transcript, path) + " -> " +
-                          Count(inputs->ids_.size(), "sentence"));
+  if (inputs->ids_.empty()) return Status(Code::kBadInput, path + ": has no words, expected some");
+  account->used.push_back(Describe(transcript, path) + " -> ids, " +
+                          (spec.classifies ? Count(inputs->ids_.size(), "sentence")
+                                           : Count(inputs->ids_[0].size(), "piece")));
   if (shortened > 0)
     account->notes.push_back(Count(shortened, "sentence") + " had more than " +
                              std::to_string(most) + " pieces, only the beginning was read");

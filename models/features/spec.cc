@@ -1,8 +1,10 @@
 #include "models/features/spec.h"
 
+#include <charconv>
 #include <tuple>
 
 #include "models/config.h"
+#include "models/io/text.h"
 #include "models/normalisation.h"
 #include "weights_generated.h"
 
@@ -14,9 +16,19 @@ constexpr std::int64_t kLastJoint = 51, kLastLandmark = 69;
 
 using models::ConfigReader;
 
-double Number(ConfigReader& read, const char* field, double value, double low, double high) {
+// The number that was meant: 0.01 rather than the float next to it, which would make f0 drift.
+double Decimal(float value) {
+  char digits[32];
+  const char* end = std::to_chars(digits, digits + sizeof digits, value).ptr;
+  double decimal = value;
+  std::from_chars(digits, end, decimal);
+  return decimal;
+}
+
+double Number(ConfigReader& read, const char* field, float stored, double low, double high) {
+  const double value = Decimal(stored);
   if (!(value >= low && value <= high))
-    read.Fail(field, std::to_string(value), std::to_string(low) + " to " + std::to_string(high));
+    read.Fail(field, Significant(value, 6), Significant(low, 6) + " to " + Significant(high, 6));
   return value;
 }
 
@@ -38,7 +50,7 @@ void ReadZsMstm(const fb::ZsMstm1Config& c, FeatureSpec* spec) {
                      : c.frames();
   spec->mel_bins = c.ast_content()->mel_bins();
   spec->d_text = c.d_text();
-  spec->frame_rate = c.frame_rate();
+  spec->frame_rate = Decimal(c.frame_rate());
   spec->pose_source =
       c.pose_source() == fb::PoseSource::Data ? PoseSource::kData : PoseSource::kNormalize;
 }
@@ -56,7 +68,7 @@ void ReadLayout(const fb::Network& network, FeatureSpec* spec) {
     }
     case fb::Config::AstConfig:
       spec->layout = Layout::kFrames;
-      spec->frames = network.config_as_AstConfig()->frames();
+      spec->frames = spec->style_frames = network.config_as_AstConfig()->frames();
       spec->mel_bins = network.config_as_AstConfig()->mel_bins();
       spec->d_text = 0;
       return;
@@ -92,7 +104,7 @@ void ReadFields(ConfigReader& read, const fb::Features& f, FeatureSpec* spec) {
   spec->pitch_minimum = Number(read, "pitch_minimum", f.pitch_minimum(), 20, 1000);
   spec->pitch_maximum = Number(read, "pitch_maximum", f.pitch_maximum(), 40, 2000);
   if (!(spec->pitch_minimum < spec->pitch_maximum))
-    read.Fail("pitch_maximum", std::to_string(spec->pitch_maximum), "more than pitch_minimum");
+    read.Fail("pitch_maximum", Significant(spec->pitch_maximum, 6), "more than pitch_minimum");
   spec->pitch_threshold = Number(read, "pitch_threshold", f.pitch_threshold(), 0, 1);
   spec->pitch = read.Enum<PitchReading>("pitch", f.pitch(), fb::PitchReading::MAX);
   spec->pitch_ends = read.Enum<PitchEnds>("pitch_ends", f.pitch_ends(), fb::PitchEnds::MAX);
@@ -111,12 +123,13 @@ Result<FeatureSpec> ReadFeatureSpec(const fb::Network& network) {
   ConfigReader read("network " + network.name()->str() + ": features");
   if (network.features() != nullptr) ReadFields(read, *network.features(), &spec);
   spec.joints = Sources(read, "joints", kLastJoint, network.joints());
-  // The filter bank's own rate; only an AST alone hears it.
+  // The filter bank's own rate; an AST alone takes all of its rows.
   if (spec.speech == SpeechFeature::kFilterBank) {
     constexpr int kFilterBankRate = 16000;
     constexpr double kFilterBankRows = 100;
     spec.sample_rate = kFilterBankRate;
-    if (network.config_type() == fb::Config::AstConfig) spec.frame_rate = kFilterBankRows;
+    spec.every_row = network.config_type() == fb::Config::AstConfig;
+    if (spec.every_row) spec.frame_rate = kFilterBankRows;
   }
   if (!spec.tags.empty() && static_cast<std::int64_t>(spec.tags.size()) != spec.d_tags)
     read.Fail("tags", std::to_string(spec.tags.size()), "d_tags, " + std::to_string(spec.d_tags));

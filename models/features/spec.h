@@ -51,6 +51,7 @@ struct FeatureSpec {
   std::vector<std::int64_t> landmarks;  ///< OpenPose face numbers, in the order of X_face
 
   SpeechFeature speech = SpeechFeature::kLogMel;
+  bool every_row = false;  ///< X_speech is every row of the filter bank, not one a motion frame
   int sample_rate = 44100;
   RowPlacement rows = RowPlacement::kExact;
   int pitch_sample_rate = 16000;

@@ -11,9 +11,8 @@ namespace {
 
 // A frame and a hop of the filter bank, in samples of 16 kHz.
 constexpr std::int64_t kBankFrame = 400, kBankHop = 160;
-// Rows kept behind the last one asked for.  PATS' rows run ahead of time by 11 rows within a
-// segment of 64 frames at 44.1 kHz, and by less in others; the next segment begins at its own time.
-constexpr std::int64_t kKept = 64;
+// Of a frame: rates such as 29.97 are whole numbers of frames in 1000 seconds.
+constexpr int kParts = 1000;
 
 template <class T>
 Result<std::unique_ptr<audio::Stage>> Own(Result<T> stage) {
@@ -32,7 +31,7 @@ Result<SpeechRows> SpeechRows::Open(const std::string& path, const FeatureSpec& 
   if (!samples.ok()) return samples.status();
   SpeechRows rows(*std::move(samples), spec);
   GESTUS_RETURN_IF_ERROR(rows.MakeStage().In(path));
-  GESTUS_RETURN_IF_ERROR(rows.CountRows(*seconds).In(path));
+  rows.CountRows(*seconds);
   return rows;
 }
 
@@ -48,22 +47,32 @@ Status SpeechRows::MakeStage() {
   stage_ = *std::move(stage);
   exact_.placement = audio::RowPlacement::kExact;
   exact_.times.sample_rate = spec_.sample_rate;
-  exact_.frames_per_second = static_cast<int>(std::lround(spec_.frame_rate));
+  if (bank) {
+    exact_.times.hop = kBankHop;
+    exact_.times.first_middle = kBankFrame / 2;
+  }
   pats_ = exact_;
+  exact_.frames_per_second = static_cast<int>(std::lround(spec_.frame_rate * kParts));
+  pats_.frames_per_second = std::max(1, static_cast<int>(std::lround(spec_.frame_rate)));
   pats_.placement = audio::RowPlacement::kPats;
   pats_.segments.frames = static_cast<int>(spec_.style_frames);
+  // PATS' rows run ahead of time within a segment, and the next segment begins at its own time.
+  if (spec_.rows == RowPlacement::kPats) {
+    const std::int64_t ahead =
+        audio::RowOfFrame(pats_, spec_.style_frames - 1) - ExactRow(spec_.style_frames);
+    kept_ = std::max<std::int64_t>(0, ahead) + 2;
+  }
   return Status();
 }
 
-Status SpeechRows::CountRows(double seconds) {
-  if (spec_.speech == SpeechFeature::kLogMel) {
+void SpeechRows::CountRows(double seconds) {
+  if (!spec_.every_row) {
     total_ = std::max<std::int64_t>(1, std::llround(std::floor(seconds * spec_.frame_rate + 1e-6)));
-    return Status();
+    return;
   }
   const auto samples = static_cast<std::int64_t>(std::ceil(seconds * spec_.sample_rate - 1e-6));
   const std::int64_t rows = samples < kBankFrame ? 0 : 1 + (samples - kBankFrame) / kBankHop;
   total_ = std::max(rows, spec_.frames);
-  return Status();
 }
 
 // Reads on until `row` is there or the recording has ended.
@@ -82,7 +91,7 @@ Status SpeechRows::Fill(std::int64_t row) {
     // Rows before the wanted one are of no use any more, but for the last: it may have to be
     // repeated.
     const auto held = static_cast<std::int64_t>(pending_.size() / width);
-    const std::int64_t drop = std::min(row - first_pending_, held) - kKept;
+    const std::int64_t drop = std::min(row - first_pending_, held) - kept_;
     if (drop > 0) {
       pending_.erase(pending_.begin(), pending_.begin() + drop * static_cast<std::int64_t>(width));
       first_pending_ += drop;
@@ -93,22 +102,26 @@ Status SpeechRows::Fill(std::int64_t row) {
   return Status();
 }
 
+std::int64_t SpeechRows::ExactRow(std::int64_t frame) const {
+  return audio::RowOfFrame(exact_, frame * kParts);
+}
+
 std::int64_t SpeechRows::RowOf(std::int64_t frame) const {
-  if (spec_.speech == SpeechFeature::kFilterBank) return frame;
-  if (spec_.rows == RowPlacement::kExact) return audio::RowOfFrame(exact_, frame);
+  if (spec_.every_row) return frame;
+  if (spec_.rows == RowPlacement::kExact || spec_.speech == SpeechFeature::kFilterBank)
+    return ExactRow(frame);
   const std::int64_t in_segment = frame % spec_.style_frames;
-  return audio::RowOfFrame(exact_, frame - in_segment) + audio::RowOfFrame(pats_, in_segment);
+  return ExactRow(frame - in_segment) + audio::RowOfFrame(pats_, in_segment);
 }
 
 Status SpeechRows::Read(std::int64_t count, std::vector<float>* rows) {
   const auto width = static_cast<std::size_t>(stage_->width());
-  const bool bank = spec_.speech == SpeechFeature::kFilterBank;
   for (std::int64_t i = 0; i < count && next_ < total_; ++i, ++next_) {
     const std::int64_t row = RowOf(next_);
     GESTUS_RETURN_IF_ERROR(Fill(row));
     const auto held = static_cast<std::int64_t>(pending_.size() / width);
     const bool missing = row >= first_pending_ + held;
-    if (held == 0 || (bank && missing)) {
+    if (held == 0 || (spec_.every_row && missing)) {
       rows->insert(rows->end(), width, 0.0f);
       continue;
     }

@@ -61,8 +61,8 @@ Status AddVoice(const std::string& path, const FeatureSpec& spec, Account* accou
       prosody::VoiceQuality::Make({.swipe = SwipeOptionsOf(spec)});
   if (!voice.ok()) return voice.status().In(path);
   constexpr std::size_t kColumns = prosody::VoiceQuality::kColumns;
-  constexpr const char* kNames[kColumns] = {"f0",      "f0_strength", "jitter",
-                                            "shimmer", "hnr",         "hammarberg"};
+  constexpr const char* kNames[kColumns] = {"pitch", "pitch_strength", "jitter", "shimmer",
+                                            "hnr",   "hammarberg"};
   std::vector<float> columns[kColumns], rows;
   for (bool ended = false; !ended;) {
     const Result<std::span<const float>> piece = samples->Next();
@@ -74,17 +74,16 @@ Status AddVoice(const std::string& path, const FeatureSpec& spec, Account* accou
     for (std::size_t i = 0; i < n * kColumns; ++i) columns[i % kColumns].push_back(rows[i]);
   }
   for (std::size_t i = 0; i < kColumns; ++i) (*arrays)[kNames[i]] = Line(std::move(columns[i]));
-  account->used.push_back(path + ": " + samples->Description() + " -> f0 and voice quality");
+  account->used.push_back(path + ": " + samples->Description() + " -> pitch and voice quality");
   account->notes.insert(account->notes.end(), samples->notes().begin(), samples->notes().end());
   return Status();
 }
 
 Status AddWords(const Recording& recording, const FeatureSpec& spec, double seconds,
                 Account* account, Arrays* arrays) {
-  const Result<words::Transcript> transcript = words::ReadTranscript(recording.transcript);
+  const Result<words::Transcript> transcript = ReadWords(recording, account);
   if (!transcript.ok()) return transcript.status();
   account->used.push_back(Describe(*transcript, recording.transcript));
-  account->notes.insert(account->notes.end(), transcript->notes.begin(), transcript->notes.end());
   if (transcript->words.empty()) return Status();
   const Result<std::vector<words::Unit>> units =
       words::MakeUnits(transcript->words, {.pause = spec.pause, .max_items = 0});

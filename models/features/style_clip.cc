@@ -9,6 +9,7 @@
 #include "models/io/text.h"
 #include "models/segments.h"
 #include "models/words/units.h"
+#include "weights_generated.h"
 
 namespace gestus::features {
 namespace {
@@ -26,6 +27,10 @@ void Cut(Array* array, std::int64_t rows) {
 
 Status FrontEnd::AddMotion(const Recording& recording, Account* account, Arrays* clip) {
   if (recording.openpose.empty()) return Status();
+  if (clip->count("style_pose") != 0 && (spec_.d_face == 0 || clip->count("style_face") != 0)) {
+    account->notes.push_back(recording.openpose + " was not used, style_pose is there already");
+    return Status();
+  }
   double seconds = 0;
   if (recording.pose_rate <= 0 && !recording.audio.empty()) {
     const Result<double> length = SecondsOf(recording.audio);
@@ -58,8 +63,16 @@ Status FrontEnd::AddSpeechAndText(const Recording& recording, const words::Trans
                                   Account* account, Arrays* clip) {
   const bool has_speech = clip->count("style_speech") != 0,
              has_text = clip->count("style_text") != 0;
-  if (has_speech && has_text) return Status();
+  if (has_speech && has_text) {
+    for (const std::string& path : {recording.audio, recording.transcript}) {
+      if (path.empty()) continue;
+      account->notes.push_back(path +
+                               " was not used, style_speech and style_text are there already");
+    }
+    return Status();
+  }
   FrameSources sources;
+  sources.arrays_path = recording.arrays_path;
   if (has_speech) sources.arrays["speech"] = clip->at("style_speech");
   if (has_text) sources.arrays["text"] = clip->at("style_text");
   sources.audio = recording.audio;
@@ -73,6 +86,7 @@ Status FrontEnd::AddSpeechAndText(const Recording& recording, const words::Trans
   if (!stream.ok()) return stream.status();
   Result<Arrays> frames = (*stream)->Next((*stream)->total());
   if (!frames.ok()) return frames.status();
+  for (std::string& note : (*stream)->Notes()) account->notes.push_back(std::move(note));
   (*clip)["style_speech"] = std::move(frames->at("speech"));
   (*clip)["style_text"] = std::move(frames->at("text"));
   return Status();
@@ -99,10 +113,12 @@ Status FrontEnd::AddTags(const words::Transcript* transcript, Account* account, 
   }
   const Result<std::vector<std::int64_t>> columns = TagColumns((*classifier)->labels());
   if (!columns.ok()) return columns.status();
+  std::size_t shortened = 0;
   for (const words::Sentence& sentence :
        words::MakeSentences(transcript->words, {.pause = spec_.pause})) {
     const Result<ActClassifier::Act> act = (*classifier)->Classify(sentence.text);
     if (!act.ok()) return act.status();
+    shortened += act->shortened;
     if (act->label < 0) continue;
     const std::int64_t column = (*columns)[static_cast<std::size_t>(act->label)];
     for (std::size_t i = 0; i < windows.size(); ++i) {
@@ -114,6 +130,9 @@ Status FrontEnd::AddTags(const words::Transcript* transcript, Account* account, 
     }
   }
   account->used.push_back("words -> style_tags, by the classifier of the weights file");
+  if (shortened > 0)
+    account->notes.push_back("style_tags: of " + Count(shortened, "sentence") +
+                             " the classifier had room for the beginning only");
   return Status();
 }
 
@@ -134,11 +153,9 @@ Result<std::vector<std::int64_t>> FrontEnd::TagColumns(
 }
 
 Result<Arrays> FrontEnd::StyleClip(const Recording& recording, Account* account) {
-  if (spec_.layout != Layout::kFrames || spec_.joints.empty())
-    return Status(Code::kInvalidArgument,
-                  file_->path() +
-                      ": network has no style or no list of joints, expected "
-                      "one whose poses are known");
+  if (spec_.layout != Layout::kFrames || spec_.d_text == 0)
+    return Status(Code::kInvalidArgument, file_->path() + ": network " + record_->name()->str() +
+                                              " has no style, expected one that takes a clip");
   const Result<const words::Transcript*> transcript = OpenTranscript(recording, account);
   if (!transcript.ok()) return transcript.status();
   Arrays clip = recording.arrays;

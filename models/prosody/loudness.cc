@@ -38,19 +38,19 @@ void LaneSpline::Solve(const double* y) {
       carried[l] = 3 * ((y[kLanes + l] - y[l]) - kSlope * spacing_);
   std::copy_n(carried, kLanes, z_.data());
   for (std::size_t i = 1; i < last; ++i) {
-    const double* at = y + i * kLanes;
+    const double *at = y + i * kLanes, *before = at - kLanes;
     const double half_pivot = 0.5 * pivot_[i], pivot = 3 * pivot_[i];
     for (std::size_t l = 0; l < kLanes; ++l) {
-      const double bend = (at[l + kLanes] - at[l]) - (at[l] - at[l - kLanes]);
+      const double bend = (at[l + kLanes] - at[l]) - (at[l] - before[l]);
       carried[l] = pivot * bend - half_pivot * carried[l];
       z_[i * kLanes + l] = carried[l];
     }
   }
   double next[kLanes] = {};
   if (mode_ == SwipeMode::kSptk) {
-    const double* at = y + last * kLanes;
+    const double *at = y + last * kLanes, *before = at - kLanes;
     for (std::size_t l = 0; l < kLanes; ++l)
-      next[l] = (3 * (kSlope * spacing_ - (at[l] - at[l - kLanes])) - 0.5 * carried[l]) /
+      next[l] = (3 * (kSlope * spacing_ - (at[l] - before[l])) - 0.5 * carried[l]) /
                 (0.5 * ratio_[last - 1] + 1);
   }
   std::copy_n(next, kLanes, z_.data() + last * kLanes);

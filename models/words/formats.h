@@ -33,6 +33,10 @@ Result<Draft> ReadCtm(std::string_view text);
 bool LooksLikeLines(std::string_view text);
 Result<Draft> ReadLines(std::string_view text);
 
+/// Prose in UTF-8 (plain_text.cc); any text that no other reader takes may look like it.
+bool LooksLikePlainText(std::string_view text);
+Result<Transcript> ReadPlainText(std::string_view text);
+
 }  // namespace gestus::words
 
 #endif  // GESTUS_MODELS_WORDS_FORMATS_H_

@@ -267,9 +267,9 @@ TEST(HostStateTest, AThousandSessionsLeaveNothingBehind) {
   const std::size_t threads = Threads();
   const double resident = ResidentMiB();
   for (int i = 0; i < (kSanitized || kEmulated ? 100 : 1000); ++i) cycle(i);
-  // A joined thread may take a moment to leave the list.
+  // A joined thread may take a moment to leave the list, those before the count too.
   for (int i = 0; i < 200 && Threads() > threads; ++i) usleep(1000);
-  EXPECT_EQ(Threads(), threads);
+  EXPECT_LE(Threads(), threads);
   // Sanitizers keep what is freed.
   if (!kSanitized && !kEmulated) {
     EXPECT_LE(ResidentMiB() - resident, 1.0);

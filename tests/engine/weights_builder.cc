@@ -50,6 +50,7 @@ Offset<fb::Joint> AddJoint(FlatBufferBuilder& b, const JointSpec& j) {
   const auto start = b.StartTable();
   if (!j.without_name) b.AddOffset(fb::Joint::VT_NAME, name);
   b.AddElement<std::int32_t>(fb::Joint::VT_PARENT, j.parent, -1);
+  b.AddElement<std::uint32_t>(fb::Joint::VT_SOURCE, j.source, 0);
   return Offset<fb::Joint>(b.EndTable(start));
 }
 

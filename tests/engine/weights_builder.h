@@ -38,6 +38,7 @@ struct JointSpec {
   std::string name;
   std::int32_t parent = -1;
   bool without_name = false;
+  std::uint32_t source = 0;
 };
 
 struct SelfTestSpec {

@@ -46,7 +46,8 @@ TEST(FeatureSpecTest, AbsentMeansDefaults) {
   EXPECT_EQ(spec->speech, SpeechFeature::kLogMel);
   EXPECT_EQ(spec->sample_rate, 44100);
   EXPECT_EQ(spec->pitch_sample_rate, 16000);
-  EXPECT_NEAR(spec->pause, 0.2, 1e-6);
+  EXPECT_EQ(spec->pause, 0.2);  // the decimal, not the float next to it
+  EXPECT_EQ(spec->pitch_hop, 0.01);
   EXPECT_TRUE(spec->landmarks.empty());
 }
 

@@ -225,6 +225,24 @@ TEST(ZsMstmStyleTest, ResetForgetsEverythingEvenNan) {
   EXPECT_EQ(std::memcmp(agent->style(), fresh->style(), width * sizeof(float)), 0);
 }
 
+// Found by tests/fuzz/weights_fuzz.cc: the columns come from a configuration that nobody has
+// checked.
+TEST(ZsMstmNormalisationTest, IsNotWidenedToSillyNumbersOfColumns) {
+  FileSpec spec = TinyZsMstm().File();
+  spec.networks[0].statistics = {{"speech", {1}, {2}}};
+  const auto file = OpenOrFail(spec);
+  const fb::Network& network = *file->FindNetwork("");
+  const auto widened = models::ReadNormalisation(network, "speech", 1000);
+  ASSERT_TRUE(widened.ok()) << widened.status().message();
+  EXPECT_EQ(widened->mean.size(), 1000u);
+  for (const std::int64_t columns : {std::int64_t{0}, std::int64_t{65537}, std::int64_t{1} << 40}) {
+    const auto refused = models::ReadNormalisation(network, "speech", columns);
+    ASSERT_FALSE(refused.ok()) << columns;
+    EXPECT_NE(refused.status().message().find("columns, expected 1 to 65536"), std::string::npos)
+        << refused.status().message();
+  }
+}
+
 TEST(ZsMstmNormalisationTest, ScalesInputsAndUndoesTheOutput) {
   // Statistics by column on the pose: what the network gives without them, times deviation, plus
   // mean; on the speech: the same as normalised input without them.
