@@ -12,6 +12,7 @@
 
 #include "models/cli/args.h"
 #include "models/cli/check.h"
+#include "models/cli/eval.h"
 #include "models/cli/features.h"
 #include "models/cli/infer.h"
 #include "models/cli/info.h"
@@ -50,6 +51,8 @@ Status Run(int argc, const char* const* argv) {
       return RunStyle(*arguments);
     case Command::kFeatures:
       return RunFeatures(*arguments);
+    case Command::kEval:
+      return RunEval(*arguments);
     case Command::kCheck:
       return RunCheck(*arguments);
     case Command::kVersion:
