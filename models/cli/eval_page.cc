@@ -32,16 +32,15 @@ font:16px/1.5 system-ui,sans-serif}
 h1{font-size:1.5rem}h2{font-size:1.15rem;margin-top:2.5rem;border-bottom:1px solid var(--rule)}
 button{float:right;font:inherit;color:inherit;background:none;border:1px solid var(--rule);
 border-radius:.4rem;padding:.2rem .6rem;cursor:pointer}
-figure{margin:1.2rem 0}figcaption{font-weight:600}
-svg{width:100%;height:auto;display:block;font:12px system-ui,sans-serif}
+figure{margin:1.2rem 0;overflow-x:auto}figcaption{font-weight:600}
+svg{width:100%;min-width:34rem;height:auto;display:block;font:12px system-ui,sans-serif}
 svg text{fill:var(--soft)}svg .grid{stroke:var(--rule)}svg .axis{stroke:var(--soft)}
 svg .line{stroke:var(--ink);stroke-dasharray:6 4}
-svg polyline{fill:none;stroke-width:1.6}svg polyline.truth{stroke-dasharray:5 3}
 .prediction{fill:var(--prediction);stroke:var(--prediction);background:var(--prediction)}
 .truth{fill:var(--truth);stroke:var(--truth);background:var(--truth)}
 .source{fill:var(--source);stroke:var(--source);background:var(--source)}
 .target{fill:var(--target);stroke:var(--target);background:var(--target)}
-svg rect{stroke:none}
+svg rect{stroke:none}svg polyline{fill:none!important;stroke-width:1.6}svg polyline.truth{stroke-dasharray:5 3}
 .legend{margin:.2rem 0;color:var(--soft);font-size:.9rem}.legend span{margin-right:1.2rem}
 .legend i{display:inline-block;width:.8rem;height:.8rem;border-radius:.2rem;margin-right:.35rem}
 .scroll{overflow-x:auto}table{border-collapse:collapse;font-size:.9rem;width:100%}
@@ -148,9 +147,10 @@ std::string BehaviourChart(const Scores& all) {
 
 std::size_t Shown(double rate) { return static_cast<std::size_t>(kShownSeconds * rate); }
 
-std::vector<float> Cut(std::vector<float> values, double rate) {
-  values.resize(std::min(values.size(), Shown(rate)));
-  return values;
+template <class T>
+std::vector<double> Cut(const std::vector<T>& values, double rate) {
+  const auto n = static_cast<std::ptrdiff_t>(std::min(values.size(), Shown(rate)));
+  return std::vector<double>(values.begin(), values.begin() + n);
 }
 
 /// Curves of the first sequence over each other.
@@ -179,7 +179,8 @@ std::string Overlays(const EvalReport& report) {
   }
   if (html.empty()) return "";
   return "<h2>" + Escaped(first.of[kPrediction]->name) + " over time</h2>\n<p class=\"note\">The " +
-         "first " + Fixed(kShownSeconds, 0) + " seconds at most, before the median filter.</p>\n" +
+         "first " + Fixed(kShownSeconds, 0) +
+         " seconds at most, of the values that were compared, before the median filter.</p>\n" +
          html;
 }
 
@@ -217,9 +218,10 @@ std::string Summary(const EvalReport& report) {
   if (!report.trained && !report.classifier.empty())
     html += std::string("<p class=\"warning\">") + kUntrained +
             ", and so is the transfer strength" + "</p>\n";
-  for (const std::string& note : report.material.notes)
-    html += "<p class=\"note\">" + Escaped(note) + "</p>\n";
-  return html;
+  if (report.material.notes.empty()) return html;
+  html += "<details open><summary>Notes</summary><ul class=\"note\">\n";
+  for (const std::string& note : report.material.notes) html += "<li>" + Escaped(note) + "</li>\n";
+  return html + "</ul></details>\n";
 }
 
 }  // namespace
@@ -230,7 +232,7 @@ std::string EvalReport::Html() const {
                      CurveCharts(all) + Overlays(*this);
   html += "<h2>All figures</h2>\n<p class=\"note\">Median of " +
           std::to_string(arguments.eval.median) + " over curves, Minkowski distances of order " +
-          Significant(arguments.eval.order, 4) + ", action units active above 0.5.</p>\n" +
+          Fixed(arguments.eval.order, 1) + ", action units active above 0.5.</p>\n" +
           FiguresTable(all);
   constexpr std::size_t kMostSequences = 40;
   if (evaluation.sequences.size() > 1) {

@@ -8,7 +8,7 @@
 namespace gestus::cli {
 namespace {
 
-constexpr double kWidth = 760, kHeight = 260, kLeft = 56, kRight = 12, kTop = 16, kBottom = 44;
+constexpr double kWidth = 760, kHeight = 260, kLeft = 56, kRight = 12, kTop = 30, kBottom = 44;
 constexpr double kPlotWidth = kWidth - kLeft - kRight, kPlotHeight = kHeight - kTop - kBottom;
 
 std::string N(double value) { return Fixed(value, 1); }
@@ -27,13 +27,19 @@ double Step(double range, double count) {
   return 10 * power;
 }
 
+/// A tick's value with as many digits as the step between ticks needs.
+std::string Label(double value, double step) {
+  if (std::abs(value) >= 1e7) return Significant(value, 3);
+  return Fixed(value, std::clamp(static_cast<int>(std::ceil(-std::log10(step) - 1e-9)), 0, 9));
+}
+
 /// Heights of values between the lowest and the highest tick.
 class Axis {
  public:
   Axis(double low, double high) {
     constexpr double kTicks = 5;
-    // A constant still needs a range.
-    if (!(high > low)) {
+    // A constant still needs a range, and so does what is one but for rounding.
+    if (!(high - low > 1e-9 * std::max(std::abs(low), std::abs(high)))) {
       const double around = std::max(std::abs(high), 1e-6);
       low -= around / 2;
       high += around / 2;
@@ -52,17 +58,12 @@ class Axis {
     for (double tick = low_; tick <= high_; ++tick) {
       const double y = At(tick * step_);
       svg += "<path class=\"grid\" d=\"M" + N(kLeft) + " " + N(y) + "H" + N(kWidth - kRight) +
-             "\"/>" + TextAt(kLeft - 6, y + 4, "end", tick == 0 ? "0" : Label(tick * step_));
+             "\"/>" + TextAt(kLeft - 6, y + 4, "end", Label(tick * step_, step_));
     }
-    return svg + TextAt(4, kTop - 4, "start", unit);
+    return svg + TextAt(4, 12, "start", unit);
   }
 
  private:
-  std::string Label(double value) const {
-    const int digits = std::clamp(static_cast<int>(std::ceil(-std::log10(step_))), 0, 9);
-    return std::abs(value) < 1e7 ? Fixed(value, digits) : Significant(value, 3);
-  }
-
   double step_ = 1, low_ = 0, high_ = 1;  // low_ and high_ in steps
 };
 
@@ -121,7 +122,7 @@ std::string Escaped(const std::string& text) {
 std::string BarChart(const std::string& caption, const std::string& unit,
                      const std::vector<std::string>& categories, const std::vector<Bars>& bars,
                      const metrics::Measure& line) {
-  constexpr std::size_t kMostLabels = 30;
+  constexpr std::size_t kMostLabels = 21;
   constexpr double kGap = 0.25;  // of a category's width
   double low = 0, high = line.value_or(0);
   for (const Bars& one : bars) {
@@ -157,9 +158,9 @@ std::string LineChart(const std::string& caption, const std::string& unit, doubl
   double low = HUGE_VAL, high = -HUGE_VAL;
   std::size_t longest = 2;
   for (const Line& line : lines) {
-    for (const float value : line.values) {
-      low = std::min<double>(low, value);
-      high = std::max<double>(high, value);
+    for (const double value : line.values) {
+      low = std::min(low, value);
+      high = std::max(high, value);
     }
     longest = std::max(longest, line.values.size());
   }
@@ -170,7 +171,7 @@ std::string LineChart(const std::string& caption, const std::string& unit, doubl
   const double step = Step(seconds, 8);
   for (double tick = 0; tick * step <= seconds * (1 + 1e-9); ++tick)
     svg += TextAt(kLeft + kPlotWidth * tick * step / seconds, kHeight - kBottom + 18, "middle",
-                  Significant(tick * step, 3) + " s");
+                  Label(tick * step, step) + " s");
   for (const Line& line : lines) {
     if (line.values.empty()) continue;
     svg += "<polyline class=\"" + line.color + "\" points=\"";

@@ -26,7 +26,7 @@ std::string BarChart(const std::string& caption, const std::string& unit,
 
 struct Line {
   std::string name, color;
-  std::vector<float> values;
+  std::vector<double> values;
 };
 
 /// Curves over time at `rate` values per second.

@@ -90,15 +90,15 @@ BehaviourSums SumBehaviour(const Figure& body, std::int64_t frames, double rate,
   return sums;
 }
 
-std::vector<float> WristSpeed(const Figure& body, std::int64_t frames, double rate) {
+std::vector<double> WristSpeed(const Figure& body, std::int64_t frames, double rate) {
   constexpr std::int64_t kBoth[] = {kRightWrist, kLeftWrist};
   const std::vector<std::size_t> wrists = PointsWith(body, kBoth);
-  std::vector<float> speed;
+  std::vector<double> speed;
   if (wrists.empty()) return speed;
   for (std::int64_t frame = 0; frame + 1 < frames; ++frame) {
     double sum = 0;
     for (const std::size_t wrist : wrists) sum += rate * Norm(body, wrist, frame, 1);
-    speed.push_back(static_cast<float>(sum / static_cast<double>(wrists.size())));
+    speed.push_back(sum / static_cast<double>(wrists.size()));
   }
   return speed;
 }

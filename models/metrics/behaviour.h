@@ -55,7 +55,7 @@ BehaviourSums SumBehaviour(const outputs::Figure& body, std::int64_t frames, dou
 
 /// Mean speed of the wrists between one frame and the next, frames - 1 values; empty without
 /// wrists.
-std::vector<float> WristSpeed(const outputs::Figure& body, std::int64_t frames, double rate);
+std::vector<double> WristSpeed(const outputs::Figure& body, std::int64_t frames, double rate);
 
 /// Equation 6.9: Dist.(x, Target) = |behaviour of x - behaviour of the target|, and Dist_avg, its
 /// share of Dist.(Source, Target) + Dist.(model, Target) in percent, with x the source and the

@@ -116,7 +116,7 @@ TEST(Behaviour, SumsOfSequencesAddUp) {
 
 TEST(WristSpeed, MeanOfBoth) {
   const Figure body = FigureOf({3, 6}, {0, 0, 0, 0, /**/ 3, 0, 4, 1});
-  EXPECT_EQ(WristSpeed(body, 2, 10), (Values{30}));
+  EXPECT_EQ(WristSpeed(body, 2, 10), std::vector<double>{30});
   EXPECT_TRUE(WristSpeed(body, 1, 10).empty());
   EXPECT_TRUE(WristSpeed(FigureOf({1}, {0, 0, 1, 1}), 2, 10).empty());
 }
