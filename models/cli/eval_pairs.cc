@@ -1,6 +1,6 @@
 // PairSequences.
 #include <algorithm>
-#include <set>
+#include <map>
 
 #include "models/cli/eval_scores.h"
 #include "models/io/text.h"
@@ -8,21 +8,26 @@
 namespace gestus::cli {
 namespace {
 
-const Sequence* Named(const std::vector<Sequence>& sequences, const std::string& name) {
-  const auto found = std::find_if(sequences.begin(), sequences.end(),
-                                  [&](const Sequence& s) { return s.name == name; });
-  return found == sequences.end() ? nullptr : &*found;
+using Names = std::map<std::string, const Sequence*>;
+
+Names NamesOf(const std::vector<Sequence>& sequences) {
+  Names names;
+  for (const Sequence& sequence : sequences) names.emplace(sequence.name, &sequence);
+  return names;
 }
 
 const Sequence* PartnerOf(const Sequence& prediction, const std::vector<Sequence>& others,
-                          bool serves_all) {
+                          const Names& names, bool serves_all) {
   if (others.empty()) return nullptr;
-  return serves_all ? &others.front() : Named(others, prediction.name);
+  if (serves_all) return &others.front();
+  const auto found = names.find(prediction.name);
+  return found == names.end() ? nullptr : found->second;
 }
 
-void NoteAlone(const Material& material, Role role, Role other, std::vector<std::string>* notes) {
-  for (const Sequence& sequence : material.sequences[role]) {
-    if (Named(material.sequences[other], sequence.name) == nullptr)
+void NoteAlone(const std::vector<Sequence>& sequences, const Names& others, Role other,
+               std::vector<std::string>* notes) {
+  for (const Sequence& sequence : sequences) {
+    if (others.count(sequence.name) == 0)
       notes->push_back(sequence.path + " was left out: no " + kRoleNames[other] + " has its name");
   }
 }
@@ -33,15 +38,16 @@ Status PairSequences(const std::array<bool, kRoles>& folders, Material* material
   const auto& predictions = material->sequences[kPrediction];
   const auto& truths = material->sequences[kTruth];
   const bool lone_pair = !folders[kPrediction] && !folders[kTruth];
+  std::array<Names, kRoles> names;
+  for (std::size_t role = 0; role < kRoles; ++role)
+    names[role] = NamesOf(material->sequences[role]);
   for (const Sequence& prediction : predictions) {
     Case one;
     one.of[kPrediction] = &prediction;
-    one.of[kTruth] = PartnerOf(prediction, truths, lone_pair);
+    one.of[kTruth] = PartnerOf(prediction, truths, names[kTruth], lone_pair);
     if (!truths.empty() && one.of[kTruth] == nullptr) continue;
     for (const Role role : {kSource, kTarget})
-      one.of[role] = PartnerOf(
-          prediction, material->sequences[role],
-          !folders[role] || (!folders[kPrediction] && material->sequences[role].size() == 1));
+      one.of[role] = PartnerOf(prediction, material->sequences[role], names[role], !folders[role]);
     material->cases.push_back(one);
   }
   if (material->cases.empty())
@@ -50,8 +56,8 @@ Status PairSequences(const std::array<bool, kRoles>& folders, Material* material
                                        "such as " +
                                        predictions.front().name + ".npz in both folders");
   if (!truths.empty() && !lone_pair) {
-    NoteAlone(*material, kPrediction, kTruth, &material->notes);
-    NoteAlone(*material, kTruth, kPrediction, &material->notes);
+    NoteAlone(predictions, names[kTruth], kTruth, &material->notes);
+    NoteAlone(truths, names[kPrediction], kPrediction, &material->notes);
   }
   for (const Role role : {kSource, kTarget}) {
     const auto paired = static_cast<std::uint64_t>(

@@ -1,4 +1,6 @@
 // EvalReport::Text: tables for a terminal.
+#include <algorithm>
+
 #include "models/cli/eval_columns.h"
 #include "models/cli/eval_report.h"
 #include "models/cli/setup.h"
@@ -9,7 +11,7 @@ namespace {
 
 using Rows = std::vector<std::vector<std::string>>;
 
-constexpr std::size_t kMostSequences = 40;
+constexpr std::size_t kMostSequences = 40, kMostNotes = 20;
 
 std::string Aligned(const Rows& rows) {
   std::vector<std::size_t> numbers;
@@ -148,7 +150,11 @@ std::string EvalReport::Text() const {
   text += ErrorText(evaluation.pooled) + BehaviourText(evaluation.pooled) + StyleText(*this) +
           SequencesText(evaluation);
   if (!material.notes.empty() || !trained || !arguments.output.empty()) text += "\n";
-  for (const std::string& note : material.notes) text += "note: " + OneLine(note) + "\n";
+  for (std::size_t i = 0; i < std::min(kMostNotes, material.notes.size()); ++i)
+    text += "note: " + OneLine(material.notes[i]) + "\n";
+  if (material.notes.size() > kMostNotes)
+    text += "note: and " + std::to_string(material.notes.size() - kMostNotes) +
+            " more; --json has them\n";
   if (!trained && !classifier.empty())
     text += std::string("warning: ") + kUntrained + ", and so is the transfer strength\n";
   if (!arguments.output.empty()) text += "wrote " + arguments.output + "\n";
