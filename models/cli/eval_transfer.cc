@@ -91,16 +91,43 @@ class MotionArrays {
   bool fits_ = false;
 };
 
-Status Count(models::Network* network, const Arguments& arguments, Array motion,
+/// Runs the classifier over one sequence; one without all the points is noted.
+Status Count(models::Network* network, const Arguments& arguments, const MotionArrays& arrays,
+             const Sequence& sequence, std::vector<std::string>* notes,
              std::optional<metrics::TransferStrength>* strength) {
   if (!*strength) strength->emplace();
-  if (motion.shape[0] == 0) return Status();
+  Array motion = arrays.Of(sequence);
+  if (motion.shape[0] == 0) {
+    if (sequence.motion.frames > 0)
+      notes->push_back(sequence.path +
+                       ": has not all points that the classifier takes and was not judged");
+    return Status();
+  }
   models::RunOptions options;
   options.threads = arguments.threads;
   models::RunReport report;
   const Result<Arrays> outputs = network->Run({{"motion", std::move(motion)}}, options, &report);
-  if (!outputs.ok()) return outputs.status();
+  if (!outputs.ok()) return outputs.status().In(sequence.path);
   (*strength)->Add(metrics::CountTransferred(outputs->at("strength").f32));
+  return Status();
+}
+
+Status CountAll(models::Network* network, const Arguments& arguments, const MotionArrays& arrays,
+                Material* material, Evaluation* evaluation) {
+  Scores& whole = evaluation->pooled;
+  for (std::size_t i = 0; i < material->cases.size(); ++i) {
+    const Sequence& prediction = *material->cases[i].of[kPrediction];
+    auto& strength = evaluation->sequences[i].transfer[kPrediction];
+    GESTUS_RETURN_IF_ERROR(
+        Count(network, arguments, arrays, prediction, &material->notes, &strength));
+    if (!whole.transfer[kPrediction]) whole.transfer[kPrediction].emplace();
+    whole.transfer[kPrediction]->Add(*strength);
+  }
+  for (const Role role : {kSource, kTarget}) {
+    for (const Sequence& sequence : material->sequences[role])
+      GESTUS_RETURN_IF_ERROR(
+          Count(network, arguments, arrays, sequence, &material->notes, &whole.transfer[role]));
+  }
   return Status();
 }
 
@@ -130,21 +157,7 @@ Result<std::string> AddTransfer(const Arguments& arguments,
     material->notes.push_back(sentence + "; no transfer strength");
     return std::string();
   }
-  Scores& whole = evaluation->pooled;
-  for (std::size_t i = 0; i < material->cases.size(); ++i) {
-    const Sequence& prediction = *material->cases[i].of[kPrediction];
-    auto& strength = evaluation->sequences[i].transfer[kPrediction];
-    GESTUS_RETURN_IF_ERROR(
-        Count(network->get(), arguments, arrays.Of(prediction), &strength).In(prediction.path));
-    if (!whole.transfer[kPrediction]) whole.transfer[kPrediction].emplace();
-    whole.transfer[kPrediction]->Add(*strength);
-  }
-  for (const Role role : {kSource, kTarget}) {
-    for (const Sequence& sequence : material->sequences[role])
-      GESTUS_RETURN_IF_ERROR(
-          Count(network->get(), arguments, arrays.Of(sequence), &whole.transfer[role])
-              .In(sequence.path));
-  }
+  GESTUS_RETURN_IF_ERROR(CountAll(network->get(), arguments, arrays, material, evaluation));
   return name;
 }
 

@@ -394,6 +394,15 @@ class TransferTest(EvalTest):
         self.assertEqual(report["all"]["transfer"]["prediction"]["taken_for_target"],
                          int((strength > 0.5).sum()))
 
+    def test_motion_without_all_points_is_not_judged(self):
+        weights = golden("classifier_three_layers.fb")
+        self.put("x/p.npz", pose=self.poses(5, 3))
+        self.put("x/s.npz", pose=self.poses(5, 2))
+        report = self.eval("x/p.npz", "--source", "x/s.npz", "--weights", weights)
+        self.assertEqual(report["all"]["transfer"]["source"],
+                         {"taken_for_target": 0, "pieces": 0, "percent": None})
+        self.assertIn("s.npz: has not all points", "".join(report["notes"]))
+
     def test_weights_name_joints(self):
         with np.load(golden("zs_mstm2_parallel.npz")) as arrays:
             self.put("x/p.npz", pose=arrays["pose"], face=arrays["face"])
