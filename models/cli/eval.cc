@@ -1,6 +1,7 @@
 // Read, pair, evaluate, report; each step can end it with one sentence.
 #include "models/cli/eval.h"
 
+#include <algorithm>
 #include <array>
 #include <optional>
 
@@ -63,7 +64,11 @@ Status RunEval(const Arguments& arguments) {
   std::array<bool, kRoles> folders{};
   GESTUS_RETURN_IF_ERROR(ReadAll({eval.predictions, eval.truth, eval.source, eval.target}, &*reader,
                                  &folders, &material));
-  material.notes.insert(material.notes.end(), reader->notes().begin(), reader->notes().end());
+  for (const std::string& note : reader->notes()) {
+    // A file may play two roles.
+    if (std::find(material.notes.begin(), material.notes.end(), note) == material.notes.end())
+      material.notes.push_back(note);
+  }
   GESTUS_RETURN_IF_ERROR(PairSequences(folders, &material));
   Result<Evaluation> evaluation = Evaluate({.median = eval.median, .order = eval.order}, &material);
   if (!evaluation.ok()) return evaluation.status();

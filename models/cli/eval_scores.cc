@@ -144,7 +144,8 @@ GroupScore GroupOf(const std::string& group, const std::vector<ChannelScore>& ch
 void AddChannelScores(const std::vector<Column>& columns, int median, Scores* scores) {
   for (const Column& column : columns) scores->channels.push_back(ScoreOf(column, median));
   for (const ChannelScore& channel : scores->channels) {
-    if (scores->groups.empty() || scores->groups.back().group != channel.group)
+    if (std::none_of(scores->groups.begin(), scores->groups.end(),
+                     [&](const GroupScore& group) { return group.group == channel.group; }))
       scores->groups.push_back(GroupOf(channel.group, scores->channels));
   }
 }

@@ -34,7 +34,9 @@ std::vector<std::string> ActivityRow(const std::string& name, const Score& score
 /// Curves one by one; of points, which are many, the means.
 std::string ErrorText(const Scores& scores) {
   if (scores.channels.empty()) return "";
-  const bool units = scores.groups.front().group == kActionUnits;
+  const bool units =
+      std::any_of(scores.groups.begin(), scores.groups.end(),
+                  [](const GroupScore& group) { return group.group == kActionUnits; });
   Rows rows = {{"", "RMSE", "PCC"}};
   if (units)
     rows[0].insert(rows[0].end(),

@@ -149,15 +149,23 @@ class CurvesTest(EvalTest):
         self.put("x/q.npz", **p)
         self.bad("eval", "x/q.npz", "x/t.csv", says=("q.npz", "times_ms"))
 
-    def csv(self, name, frames, rate=24.0):
+    def csv(self, name, frames, rate=24.0, order=range(9)):
         values = np.round(np.clip(self.random.normal(0.5, 0.7, (frames, 9)), 0, 5), 2)
         with open(self.path(name), "w", encoding="ascii", newline="") as file:
             out = csv.writer(file)
             out.writerow(["frame", "timestamp", "confidence", "success"] +
-                         ["pose_" + c if c.startswith("R") else c + "_r" for c in CHANNELS])
+                         [("pose_" + CHANNELS[n]) if n > 5 else CHANNELS[n] + "_r" for n in order])
             for i, row in enumerate(values):
-                out.writerow([i + 1, f"{i / rate:.6f}", 0.98, 1, *row])
+                out.writerow([i + 1, f"{i / rate:.6f}", 0.98, 1, *row[list(order)]])
         return values.astype("f4")
+
+    def test_hit_ratios_are_shown_wherever_the_action_units_stand(self):
+        self.csv("p.csv", 20, order=(6, 0, 7, 1, 8, 2, 3, 4, 5))
+        report = self.eval("p.csv", "p.csv")
+        self.assertEqual([m["group"] for m in report["all"]["means"]], ["head", "action units"])
+        self.assertEqual([m["channels"] for m in report["all"]["means"]], [3, 6])
+        self.assertRegex(self.good("eval", "p.csv", "p.csv"),
+                         r"AHR sum %[^\n]*\n(.*\n)*  AU01 +0 +1\.000 +100\.0 +100\.0 +100\.0")
 
     def test_recordings_of_unequal_length(self):
         p, t = self.csv("p.csv", 61), self.csv("t.csv", 50)
