@@ -14,6 +14,7 @@ Examples:
   infer-cli features weights.fb speech.wav speech.json  what the networks are fed with
   infer-cli export weights.fb m.npz --export bvh=m.bvh  motion for other programs
   infer-cli info weights.fb                             what a file holds, takes and gives
+  infer-cli eval made/ filmed/ -o report.html           how good is the motion?
   infer-cli check weights.fb                            does it compute here what it should?
 
 Exit codes: 0 done; 2 an error, told in one line on the standard error output. Outputs are complete
@@ -97,6 +98,43 @@ void AddInfer(CLI::App* app, Arguments* a) {
   AddShared(app, a);
 }
 
+CLI::App* AddEval(CLI::App* app, Arguments* a) {
+  CLI::App* eval = app->add_subcommand("eval", "Measure motion as the thesis' evaluations do");
+  EvalOptions* e = &a->eval;
+  eval->add_option("PREDICTIONS", e->predictions,
+                   "Arrays (.npz), OpenFace's CSV, a folder of OpenPose's frames, or a folder of "
+                   "many of these")
+      ->type_name("FILE")
+      ->required();
+  eval->add_option("TRUTH", e->truth, "The same of the truth, paired by name")->type_name("FILE");
+  eval->add_option("--source", e->source, "Motion of the speaker who is heard")->type_name("FILE");
+  eval->add_option("--target", e->target, "Motion of the speaker whose style it is")
+      ->type_name("FILE");
+  eval->add_option("--weights", a->weights, "Weights file: names joints, holds the classifier")
+      ->type_name("FILE.fb");
+  eval->add_option("--classifier", e->classifier, "Network that judges transfer strength")
+      ->type_name("NAME");
+  eval->add_option("--median", e->median, "Median filter over curves; default 7 frames, 1: none")
+      ->type_name("N")
+      ->check(CLI::Range(1, 99, ""));
+  eval->add_option("--order", e->order, "Order of Minkowski distances; default 2")
+      ->type_name("P")
+      ->check(CLI::Range(1.0, 100.0, ""));
+  eval->add_option("--fps", e->rate,
+                   "Frames per second of arrays; default: as the weights say, or 15 for poses and "
+                   "24 for curves")
+      ->type_name("FPS")
+      ->check(CLI::Range(1.0, 240.0, ""));
+  eval->add_option("--pose-fps", a->pose_rate, "Frames per second of OpenPose's files; default 15")
+      ->type_name("FPS")
+      ->check(CLI::Range(1.0, 1000.0, ""));
+  eval->add_option("-o,--output", a->output, "Report, by its ending .html, .csv, .json or .txt")
+      ->type_name("FILE");
+  AddCompute(eval, a);
+  AddShared(eval, a);
+  return eval;
+}
+
 // "a/speech.wav" -> "a/speech.out.npz"
 std::string DefaultOutput(std::string input, const std::string& ending) {
   while (input.size() > 1 && input.ends_with('/')) input.pop_back();
@@ -165,6 +203,8 @@ Result<Arguments> ParseArguments(int argc, const char* const* argv) {
   AddExport(convert, &a)->required();
   AddShared(convert, &a);
 
+  CLI::App* eval = AddEval(&app, &a);
+
   CLI::App* check = app.add_subcommand("check", "Run the self-tests that a weights file carries");
   check->add_option("WEIGHTS", a.weights, "Weights file")->type_name("FILE.fb")->required();
   AddCompute(check, &a);
@@ -185,6 +225,7 @@ Result<Arguments> ParseArguments(int argc, const char* const* argv) {
   if (style->parsed()) a.command = Command::kStyle;
   if (convert->parsed()) a.command = Command::kExport;
   if (check->parsed()) a.command = Command::kCheck;
+  if (eval->parsed()) a.command = Command::kEval;
   if (features->parsed()) {
     a.command = Command::kFeatures;
     if (a.output.empty()) a.output = DefaultOutput(a.inputs.front(), ".features.npz");

@@ -10,7 +10,16 @@
 
 namespace gestus::cli {
 
-enum class Command { kInfer, kInfo, kStyle, kFeatures, kExport, kCheck, kVersion, kHelp };
+enum class Command { kInfer, kInfo, kStyle, kFeatures, kExport, kEval, kCheck, kVersion, kHelp };
+
+/// infer-cli eval
+struct EvalOptions {
+  std::string predictions, truth, source, target;  ///< files or folders; empty: not given
+  std::string classifier;  ///< network of the weights file; empty: the only one, if any
+  int median = 7;          ///< frames
+  double order = 2;        ///< of Minkowski distances
+  double rate = 0;         ///< frames per second of arrays; 0: as the weights say
+};
 
 struct Arguments {
   Command command = Command::kInfer;
@@ -32,6 +41,7 @@ struct Arguments {
   bool plan = false;
   bool taps = false;
   bool json = false;
+  EvalOptions eval;
   std::string help;  ///< kHelp: the text to print
 
   /// "speech.wav, words.json"

@@ -12,6 +12,7 @@
 
 #include "models/cli/args.h"
 #include "models/cli/check.h"
+#include "models/cli/eval.h"
 #include "models/cli/export.h"
 #include "models/cli/features.h"
 #include "models/cli/infer.h"
@@ -53,6 +54,8 @@ Status Run(int argc, const char* const* argv) {
       return RunFeatures(*arguments);
     case Command::kExport:
       return RunExport(*arguments);
+    case Command::kEval:
+      return RunEval(*arguments);
     case Command::kCheck:
       return RunCheck(*arguments);
     case Command::kVersion:
