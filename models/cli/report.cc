@@ -128,6 +128,7 @@ std::string InferReport::Text() const {
     text += ", " + Significant(static_cast<double>(run.frames) / run.frame_rate, 3) + " s at " +
             Significant(run.frame_rate, 3) + " frames/s";
   }
+  for (const std::string& line : views) text += "\nwrote  " + line;
   text += "\nspeed  " + Seconds(timing.median) + " a segment";
   if (arguments.repeat > 1) text += " (median; p99 " + Seconds(timing.p99) + ")";
   text += ", " + Count(timing.segments, "segment");
@@ -152,7 +153,7 @@ std::string InferReport::Json() const {
       .Member("trained", setup.Trained())
       .Member("input", arguments.Input())
       .Member("output", arguments.output);
-  json.Member("used", used).Member("style_used", style_used);
+  json.Member("views", views).Member("used", used).Member("style_used", style_used);
   ArraysJson(&json, "inputs", inputs);
   ArraysJson(&json, "outputs", outputs);
   json.Member("segments", static_cast<std::uint64_t>(timing.segments))

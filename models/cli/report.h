@@ -26,6 +26,7 @@ struct InferReport {
   const std::vector<std::string>& style_used;
   const models::Arrays& inputs;  ///< those that were given as such
   const models::Arrays& outputs;
+  const std::vector<std::string>& views;  ///< of --html, --svg and --mp4
   const models::RunReport& run;
 
   std::string Text() const;
