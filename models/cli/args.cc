@@ -9,6 +9,7 @@ namespace {
 constexpr const char* kFooter = R"(
 Examples:
   infer-cli weights.fb speech.wav --words speech.json --style anna/ -o motion.npz
+  infer-cli weights.fb speech.wav --html motion.html    the same to watch, in a browser
   infer-cli weights.fb arrays.npz                       motion into arrays.out.npz
   infer-cli style weights.fb anna/ -o anna.style        a speaker's style, once and for all
   infer-cli features weights.fb speech.wav speech.json  what the networks are fed with
@@ -64,6 +65,19 @@ CLI::Option* AddExport(CLI::App* app, Arguments* a) {
       ->allow_extra_args(false);
 }
 
+// What to look at afterwards.
+void AddViews(CLI::App* app, Arguments* a) {
+  app->add_option("--html", a->html, "A page that plays the motion beside the recording")
+      ->type_name("FILE");
+  app->add_option("--svg", a->svg, "A contact sheet: figures over time")->type_name("FILE");
+  app->add_option("--mp4", a->mp4, "A video, where the program ffmpeg is installed")
+      ->type_name("FILE");
+  app->add_option("--source", a->source,
+                  "Motion of the source speaker to show beside it, arrays like the output's")
+      ->type_name("FILE.npz");
+  app->add_option("--target", a->target, "The same of the target speaker")->type_name("FILE.npz");
+}
+
 void AddInfer(CLI::App* app, Arguments* a) {
   app->add_option("WEIGHTS", a->weights, "Weights file")->type_name("FILE.fb");
   app->add_option("INPUT", a->inputs,
@@ -79,6 +93,7 @@ void AddInfer(CLI::App* app, Arguments* a) {
       ->type_name("FILE");
   AddExport(app, a);
   AddRecording(app, a);
+  AddViews(app, a);
   AddCompute(app, a);
   app->add_option("--repeat", a->repeat, "Runs of each segment, for timing; default 1")
       ->type_name("N")

@@ -32,6 +32,8 @@ struct Arguments {
   std::vector<std::string> exports;  ///< FORMAT=PATH each
   std::vector<float> stance;         ///< X, Y and length of the shoulder; empty: the default
   bool halve = false;                ///< OpenFace's values
+  std::string html, svg, mp4;        ///< what to look at; empty: not wanted
+  std::string source, target;        ///< motion to show beside it
   std::string network;
   std::string isa;
   int threads = 1;

@@ -12,6 +12,7 @@
 #include "models/cli/report.h"
 #include "models/cli/setup.h"
 #include "models/cli/style.h"
+#include "models/cli/views.h"
 #include "models/io/text.h"
 
 namespace gestus::cli {
@@ -146,10 +147,15 @@ Status RunInfer(const Arguments& arguments) {
   // Created before the work, so that a forbidden path is told at once.
   Result<AtomicFile> file = AtomicFile::Create(arguments.output);
   if (!file.ok()) return file.status().In(arguments.output);
+  Result<Views> views = Views::Open(arguments, *setup);
+  if (!views.ok()) return views.status();
 
   const Result<Arrays> outputs = RunAll(arguments, &*setup, &*feed, &report);
   if (!outputs.ok()) return outputs.status();
   GESTUS_RETURN_IF_ERROR(WriteNpz(*outputs, &*file).In(arguments.output));
+  std::vector<std::string> written;
+  GESTUS_RETURN_IF_ERROR(
+      views->Write(arguments, *given, *setup, *outputs, &written, &report.notes));
   GESTUS_RETURN_IF_ERROR(file->Commit().In(arguments.output));
   if (!exports->files.empty()) {
     const Result<outputs::Motion> motion =
@@ -160,8 +166,9 @@ Status RunInfer(const Arguments& arguments) {
 
   report.notes.insert(report.notes.begin(), feed->account.notes.begin(), feed->account.notes.end());
   const std::vector<std::string> exported = exports->Lines();
-  const InferReport said{arguments,    *setup,   feed->account.used, feed->style_used,
-                         feed->arrays, *outputs, exported,           report};
+  const InferReport said{arguments,        *setup,       feed->account.used,
+                         feed->style_used, feed->arrays, *outputs,
+                         exported,         written,      report};
   return Print(arguments.json ? said.Json() : said.Text());
 }
 

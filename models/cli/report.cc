@@ -129,6 +129,7 @@ std::string InferReport::Text() const {
             Significant(run.frame_rate, 3) + " frames/s";
   }
   for (const std::string& line : exports) text += "\nwrote  " + line;
+  for (const std::string& line : views) text += "\nwrote  " + line;
   text += "\nspeed  " + Seconds(timing.median) + " a segment";
   if (arguments.repeat > 1) text += " (median; p99 " + Seconds(timing.p99) + ")";
   text += ", " + Count(timing.segments, "segment");
@@ -153,7 +154,10 @@ std::string InferReport::Json() const {
       .Member("trained", setup.Trained())
       .Member("input", arguments.Input())
       .Member("output", arguments.output);
-  json.Member("exports", exports).Member("used", used).Member("style_used", style_used);
+  json.Member("exports", exports)
+      .Member("views", views)
+      .Member("used", used)
+      .Member("style_used", style_used);
   ArraysJson(&json, "inputs", inputs);
   ArraysJson(&json, "outputs", outputs);
   json.Member("segments", static_cast<std::uint64_t>(timing.segments))

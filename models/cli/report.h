@@ -27,6 +27,7 @@ struct InferReport {
   const models::Arrays& inputs;  ///< those that were given as such
   const models::Arrays& outputs;
   const std::vector<std::string>& exports;  ///< files of other programs, a line each
+  const std::vector<std::string>& views;    ///< of --html, --svg and --mp4
   const models::RunReport& run;
 
   std::string Text() const;

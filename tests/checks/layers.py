@@ -38,7 +38,7 @@ INSIDE = re.compile(r"kernels/(isa/|.*\.inl\.h)")
 # The probe of the machine's peak is a kernel itself, one that only the benches link.
 PROBE = "bench/peak_probe.cc"
 LIBRARIES = {"xsimd": {"kernels"}, "Eigen": {"bench", "models/audio"}, "unsupported": {"models/audio"},
-             "nlohmann": {"models/io"}, "zip.h": {"models/cli", "tests"},
+             "nlohmann": {"models/io", "tests"}, "zip.h": {"models/cli", "tests"},
              "sndfile.h": {"models/audio", "tests"},
              "CLI": {"models/cli"}, "utf8proc.h": {"models/text"}}
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', re.M)

@@ -1,0 +1,210 @@
+// The rows of the timeline: what each shows, how high it is, and how it is drawn.
+//
+// A row's draw(context, view) paints between view.left and view.right, from 0 to its height;
+// view.x(seconds) is the place of a time.
+
+const CURVE_NAMES = {
+  AU01: "inner brow", AU02: "outer brow", AU04: "brow down", AU05: "upper lid", AU06: "cheek",
+  AU07: "lid tight", Rx: "nod", Ry: "turn", Rz: "tilt",
+};
+
+function tracksOf(show, small, stretch) {
+  const rows = [], high = (wide, narrow) => Math.round(small ? narrow : wide * stretch);
+  if (show.levels) rows.push(waveRow(show, high(52, 44)));
+  if (show.spectrogram) rows.push(spectrogramRow(show, high(68, 52)));
+  if (show.words.length > 0) rows.push(wordRow(show, 28));
+  for (const name of curveNames(show)) rows.push(curveRow(show, name, high(38, 36)));
+  if (show.takes.some((motion) => motion.body)) {
+    rows.push(wristRow(show, "RWrist", "Right wrist", high(46, 40)));
+    rows.push(wristRow(show, "LWrist", "Left wrist", high(46, 40)));
+  }
+  return rows.filter((row) => row !== null);
+}
+
+function curveNames(show) {
+  const names = new Set();
+  for (const motion of show.takes) for (const curve of motion.curves ?? []) names.add(curve.name);
+  return names;
+}
+
+function waveRow({ levels }, height) {
+  const loudest = Math.max(16, levels.peak.reduce((a, b) => Math.max(a, b), 0));
+  const band = (context, view, values) => {
+    const middle = height / 2, reach = (height / 2 - 2) / loudest;
+    const begin = Math.max(0, Math.floor(view.begin * levels.rate));
+    const end = Math.min(values.length, Math.ceil(view.end * levels.rate) + 1);
+    const step = Math.max(1, Math.floor((end - begin) / (2 * (view.right - view.left))));
+    const edge = [];
+    for (let i = begin; i < end; i += step) {
+      let most = 0;
+      for (let j = i; j < Math.min(i + step, end); ++j) most = Math.max(most, values[j]);
+      edge.push([view.x((i + 0.5) / levels.rate), Math.max(most * reach, 0.5)]);
+    }
+    context.beginPath();
+    for (const [x, reached] of edge) context.lineTo(x, middle - reached);
+    for (const [x, reached] of edge.reverse()) context.lineTo(x, middle + reached);
+    context.fill();
+  };
+  return {
+    label: "Sound", detail: "", height,
+    draw(context, view, palette) {
+      context.fillStyle = palette.wave;
+      context.globalAlpha = 0.4;
+      band(context, view, levels.peak);
+      context.globalAlpha = 1;
+      band(context, view, levels.rms);
+    },
+    value: () => "",
+  };
+}
+
+function spectrogramRow({ spectrogram, pitch }, height) {
+  const { bins, values, rate } = spectrogram, rows = values.length / bins;
+  let picture = null, colour = "";
+  const paint = (palette) => {
+    picture = new OffscreenCanvas(rows, bins);
+    const image = new ImageData(rows, bins), [r, g, b] = rgbOf(palette.spectrum);
+    for (let row = 0; row < rows; ++row) {
+      for (let bin = 0; bin < bins; ++bin) {
+        image.data.set([r, g, b, values[row * bins + bin]], 4 * ((bins - 1 - bin) * rows + row));
+      }
+    }
+    picture.getContext("2d").putImageData(image, 0, 0);
+    colour = palette.spectrum;
+  };
+  return {
+    label: "Spectrum", detail: pitch ? "and pitch" : "mel bands", height,
+    draw(context, view, palette) {
+      if (colour !== palette.spectrum) paint(palette);
+      context.drawImage(picture, view.x(0), 1, view.x(rows / rate) - view.x(0), height - 2);
+      if (pitch) drawPitch(context, view, palette, pitch, height);
+    },
+    value: (time) => {
+      const hz = pitch ? pitch.hz[Math.floor(time * pitch.rate)] : 0;
+      return hz > 0 ? `${hz.toFixed(0)} Hz` : "";
+    },
+  };
+}
+
+// From 50 to 500 Hz by octaves; a gap where there is no voice.
+function drawPitch(context, view, palette, { hz, rate }, height) {
+  const y = (value) => height - 4 - (height - 8) * Math.min(Math.max(Math.log2(value / 50) / Math.log2(10), 0), 1);
+  context.strokeStyle = palette.pitch;
+  context.lineWidth = 1.8;
+  context.beginPath();
+  const begin = Math.max(0, Math.floor(view.begin * rate)), end = Math.min(hz.length, Math.ceil(view.end * rate));
+  for (let i = begin; i < end; ++i) {
+    if (hz[i] <= 0) continue;
+    if (i > begin && hz[i - 1] > 0) context.lineTo(view.x(i / rate), y(hz[i]));
+    else context.moveTo(view.x(i / rate), y(hz[i]));
+  }
+  context.stroke();
+}
+
+function wordRow({ words }, height) {
+  return {
+    label: "Words", detail: "", height,
+    draw(context, view, palette) {
+      for (let i = 0; i < words.length; ++i) this.drawWord(context, view, palette, i, false);
+    },
+    drawNow(context, view, palette, time) {
+      const now = wordAt(words, time);
+      if (now >= 0) this.drawWord(context, view, palette, now, true);
+    },
+    drawWord(context, view, palette, i, now) {
+      const [text, start, end] = words[i], x = view.x(start), width = Math.max(view.x(end) - x - 2, 2);
+      if (x + width < view.left || x > view.right) return;
+      context.fillStyle = now ? palette.accent : palette.word;
+      context.beginPath();
+      context.roundRect(x + 1, 3, width, height - 6, 4);
+      context.fill();
+      if (width < 14) return;
+      context.save();
+      context.clip();
+      context.fillStyle = now ? palette.onAccent : palette.ink;
+      context.font = `12px ${FONT}`;
+      context.textAlign = context.measureText(text).width < width - 4 ? "center" : "start";
+      context.direction = "inherit";
+      context.fillText(text, context.textAlign === "center" ? x + 1 + width / 2 : x + 4, height / 2 + 0.5);
+      context.restore();
+    },
+    value: () => "",
+  };
+}
+
+// Lines of all takes, that of the prediction on top.
+function drawLines(context, view, palette, takes, valuesOf, y) {
+  const order = [...takes].sort((a, b) => (a.role === "prediction") - (b.role === "prediction"));
+  for (const motion of order) {
+    const values = valuesOf(motion);
+    if (!values) continue;
+    const begin = Math.max(0, Math.floor(view.begin * motion.rate));
+    const end = Math.min(values.length - 1, Math.ceil(view.end * motion.rate));
+    context.strokeStyle = palette[motion.role];
+    context.lineWidth = motion.role === "prediction" ? 1.8 : 1.3;
+    context.lineJoin = "round";
+    context.beginPath();
+    for (let frame = begin; frame <= end; ++frame) context.lineTo(view.x(frame / motion.rate), y(values[frame]));
+    if (begin === end) context.lineTo(view.x(begin / motion.rate) + 2, y(values[begin]));
+    context.stroke();
+  }
+}
+
+function curveRow({ takes, prediction }, name, height) {
+  const curveOf = (motion) => (motion.curves ?? []).find((curve) => curve.name === name);
+  const curves = takes.map(curveOf).filter((curve) => curve);
+  const angle = curves[0].unit === "rad", all = curves.flatMap((curve) => Array.from(curve.values));
+  const reach = all.reduce((a, b) => Math.max(a, Math.abs(b)), angle ? 0.1 : 0);
+  const low = angle ? -reach : Math.min(0, ...curves.map((curve) => curve.minimum));
+  const high = angle ? reach : Math.max(Math.min(reach * 1.1, curves[0].maximum || reach), low + 1);
+  const y = (value) => height - 5 - (height - 10) * (Math.min(Math.max(value, low), high) - low) / (high - low);
+  const shown = curveOf(prediction) ? prediction : takes.find(curveOf);
+  return {
+    label: name, detail: CURVE_NAMES[name] ?? "", height, takes,
+    draw(context, view, palette) {
+      drawRule(context, view, palette, y(0));
+      drawLines(context, view, palette, takes, (motion) => curveOf(motion)?.values, y);
+    },
+    value: (time) => {
+      const value = curveOf(shown).at(shown, time);
+      return angle ? `${(value * 180 / Math.PI).toFixed(0)}°` : value.toFixed(1);
+    },
+  };
+}
+
+function wristRow({ takes, prediction }, joint, label, height) {
+  const speeds = new Map();
+  for (const motion of takes) {
+    const point = motion.body ? motion.body.byName.get(joint) : undefined;
+    if (point === undefined) continue;
+    const unit = motion.normalised ? motion.shoulder : 1;
+    speeds.set(motion, speedOf(motion, point).map((speed) => speed / unit));
+  }
+  if (speeds.size === 0) return null;
+  const sorted = Float32Array.from([...speeds.values()].flatMap((values) => Array.from(values))).sort();
+  const high = Math.max(sorted[Math.round(0.99 * (sorted.length - 1))] * 1.1, 0.2);
+  const y = (value) => height - 5 - (height - 9) * Math.min(value, high) / high;
+  const shown = speeds.has(prediction) ? prediction : speeds.keys().next().value;
+  return {
+    label, detail: "speed", height, takes,
+    draw(context, view, palette) {
+      drawRule(context, view, palette, y(0));
+      drawLines(context, view, palette, takes, (motion) => speeds.get(motion), y);
+    },
+    value: (time) => {
+      const values = speeds.get(shown), { before, after, share } = between(shown, time);
+      const speed = values[before] + share * (values[after] - values[before]);
+      return shown.normalised ? `${speed.toFixed(1)} sh/s` : `${speed.toFixed(0)} px/s`;
+    },
+  };
+}
+
+function drawRule(context, view, palette, y) {
+  context.fillStyle = palette.line;
+  context.fillRect(view.left, Math.round(y), view.right - view.left, 1);
+}
+
+// The parts of "#rrggbb".
+function rgbOf(colour) {
+  return [1, 3, 5].map((at) => parseInt(colour.slice(at, at + 2), 16));
+}
