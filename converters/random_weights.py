@@ -12,11 +12,12 @@ import numpy as np
 from . import kinds, shapes
 
 
-def random_weights(network, seed):
-    """key -> float32 array for a completed network."""
+def random_weights(network, seed, only=()):
+    """key -> float32 array for a completed network; `only` those whose keys begin so, if given."""
     kind = kinds.of(network)
     return {key: _tensor(kind, key, shape, seed)
-            for key, shape in shapes.network_shapes(network).items()}
+            for key, shape in shapes.network_shapes(network).items()
+            if not only or key.startswith(tuple(only))}
 
 
 def save_checkpoint(path, tensors):
