@@ -2,6 +2,7 @@
 #include "models/cli/args.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 
 namespace gestus::cli {
 namespace {
@@ -77,6 +78,34 @@ void AddInfer(CLI::App* app, Arguments* a) {
   AddShared(app, a);
 }
 
+// What becomes of the motion; without any of these it stays as the network said it.
+std::vector<CLI::Option*> AddFinish(CLI::App* app, outputs::FinishOptions* options) {
+  std::vector<CLI::Option*> all = {
+      app->add_option("--fps", options->frame_rate,
+                      "Frames per second of the motion; default: the network's")
+          ->type_name("FPS")
+          ->check(CLI::Range(1.0, outputs::kMaxFinishRate, "")),
+      app->add_option("--crossfade", options->crossfade,
+                      "Seconds over which the jump at a segment's border fades on each side; "
+                      "default 0.3, where any of these options is given")
+          ->type_name("SECONDS")
+          ->check(CLI::Range(0.0, outputs::kMaxFinishSeconds, "")),
+      app->add_option("--smooth", options->smooth,
+                      "Seconds of motion that make each smoothed frame; default 0, not at all")
+          ->type_name("SECONDS")
+          ->check(CLI::Range(0.0, outputs::kMaxFinishSeconds, "")),
+      app->add_option(
+             "--amplitude", options->amplitude,
+             "How far motion goes from the rest pose: 0 still, 1 as it is (default), to 10")
+          ->type_name("A")
+          ->check(CLI::Range(0.0, outputs::kMaxAmplitude, "")),
+      app->add_flag_callback(
+          "--linear", [options] { options->interpolation = outputs::Interpolation::kLinear; },
+          "Straight lines between frames instead of cubics without overshoot")};
+  for (CLI::Option* option : all) option->group("Finish");
+  return all;
+}
+
 // "a/speech.wav" -> "a/speech.out.npz"
 std::string DefaultOutput(std::string input, const std::string& ending) {
   while (input.size() > 1 && input.ends_with('/')) input.pop_back();
@@ -101,6 +130,8 @@ Result<Arguments> ParseArguments(int argc, const char* const* argv) {
   app.footer(kFooter);
   app.require_subcommand(0, 1);
   AddInfer(&app, &a);
+  outputs::FinishOptions finish;
+  const std::vector<CLI::Option*> finishing = AddFinish(&app, &finish);
   app.add_flag("--version", version, "Version, instruction sets and compiler");
 
   CLI::App* info = app.add_subcommand("info", "Show what a weights file holds, takes and gives");
@@ -160,6 +191,8 @@ Result<Arguments> ParseArguments(int argc, const char* const* argv) {
     if (a.output.empty()) a.output = DefaultOutput(a.inputs.front(), ".features.npz");
   }
   if (a.command != Command::kInfer) return a;
+  const auto given = [](const CLI::Option* option) { return option->count() > 0; };
+  if (std::any_of(finishing.begin(), finishing.end(), given)) a.finish = finish;
   if (a.weights.empty()) return Missing("WEIGHTS");
   if (a.inputs.empty() && !a.words.empty()) a.inputs = {a.words};
   if (a.inputs.empty()) return Missing("INPUT");

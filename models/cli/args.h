@@ -2,11 +2,13 @@
 #ifndef GESTUS_MODELS_CLI_ARGS_H_
 #define GESTUS_MODELS_CLI_ARGS_H_
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "engine/status.h"
 #include "models/network.h"
+#include "models/outputs/finish.h"
 
 namespace gestus::cli {
 
@@ -25,6 +27,7 @@ struct Arguments {
   int threads = 1;
   int repeat = 1;
   models::Sampling sampling;
+  std::optional<outputs::FinishOptions> finish;  ///< as one of its options was given
   bool profile = false;
   bool plan = false;
   bool taps = false;

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "models/cli/feed.h"
+#include "models/cli/finish.h"
 #include "models/cli/inputs.h"
 #include "models/cli/machine.h"
 #include "models/cli/npz.h"
@@ -144,14 +145,16 @@ Status RunInfer(const Arguments& arguments) {
   Result<AtomicFile> file = AtomicFile::Create(arguments.output);
   if (!file.ok()) return file.status().In(arguments.output);
 
-  const Result<Arrays> outputs = RunAll(arguments, &*setup, &*feed, &report);
+  Result<Arrays> outputs = RunAll(arguments, &*setup, &*feed, &report);
   if (!outputs.ok()) return outputs.status();
+  const auto finished = FinishOutputs(arguments, *setup, &*outputs, &report);
+  if (!finished.ok()) return finished.status();
   GESTUS_RETURN_IF_ERROR(WriteNpz(*outputs, &*file).In(arguments.output));
   GESTUS_RETURN_IF_ERROR(file->Commit().In(arguments.output));
 
   report.notes.insert(report.notes.begin(), feed->account.notes.begin(), feed->account.notes.end());
   const InferReport said{arguments, *setup, feed->account.used, feed->style_used, feed->arrays,
-                         *outputs,  report};
+                         *outputs,  report, *finished};
   return Print(arguments.json ? said.Json() : said.Text());
 }
 

@@ -2,12 +2,14 @@
 #ifndef GESTUS_MODELS_CLI_REPORT_H_
 #define GESTUS_MODELS_CLI_REPORT_H_
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "models/cli/args.h"
 #include "models/cli/setup.h"
 #include "models/network.h"
+#include "models/outputs/finish.h"
 
 namespace gestus::cli {
 
@@ -27,6 +29,7 @@ struct InferReport {
   const models::Arrays& inputs;  ///< those that were given as such
   const models::Arrays& outputs;
   const models::RunReport& run;
+  const std::optional<outputs::Finished>& finished;
 
   std::string Text() const;
   std::string Json() const;

@@ -13,6 +13,7 @@ namespace gestus::outputs {
 namespace {
 
 constexpr std::int64_t kMaxValues = std::int64_t{1} << 28;
+constexpr double kShoulder = 167;  // from neck to shoulder in PATS' normalised poses
 // Fewer say nothing of a parabola that goes through three.
 constexpr std::int64_t kLeastWindow = 5;
 
@@ -87,8 +88,8 @@ std::vector<Seam> SeamsOf(const Motion& motion) {
 Status CheckWithin(const char* what, double value, double least, double most) {
   if (value >= least && value <= most) return Status();
   return Status(Code::kInvalidArgument, std::string(what) + ": is " + Significant(value, 6) +
-                                            ", expected " + Significant(least, 6) + " to " +
-                                            Significant(most, 6));
+                                            ", expected " + Fixed(least, 0) + " to " +
+                                            Fixed(most, 0));
 }
 
 std::int64_t FramesAt(const Motion& motion, double rate) {
@@ -221,8 +222,9 @@ std::vector<Jerk> MeanJerk(const Motion& motion) {
     std::vector<std::vector<std::size_t>> vectors;
     for (std::size_t p = 0; p < points; ++p)
       if (!body || !IsNeck(from->points[p])) vectors.push_back({p, points + p});
-    add(part, motion.normalised ? "units of 1/167 shoulder" : "pixels",
-        MeanThird(motion, from->values, 2 * points, vectors));
+    std::optional<double> mean = MeanThird(motion, from->values, 2 * points, vectors);
+    if (mean.has_value() && motion.normalised) *mean /= kShoulder;
+    add(part, motion.normalised ? "shoulder lengths" : "pixels", mean);
   };
   figure("body", motion.body, true);
   figure("face", motion.face, false);
@@ -255,7 +257,7 @@ Result<Finished> Finish(const Motion& motion, const FinishOptions& options) {
                          Count(static_cast<std::uint64_t>(smoothed.frames), "frame") + " at " +
                          Significant(smoothed.frame_rate, 4) + " a second: nothing was smoothed");
   done.motion = Clamp(done.motion);
-  done.after = MeanJerk(done.motion);
+  done.after = MeanJerk(Resample(done.motion, motion.frame_rate));
   return done;
 }
 

@@ -23,7 +23,7 @@ enum class Interpolation {
 struct FinishOptions {
   double frame_rate = 0;  ///< frames per second, 1 to 1000; 0: that of the motion
   Interpolation interpolation = Interpolation::kMonotone;
-  double crossfade = 0.2;  ///< seconds on each side of a seam, 0 to 10; 0: seams stay as they are
+  double crossfade = 0.3;  ///< seconds on each side of a seam, 0 to 10; 0: seams stay as they are
   double smooth = 0;       ///< seconds that a smoothed value looks at, 0 to 10; 0: not at all
   double amplitude = 1;    ///< 0: still, 1: as it is, to 10
 };
@@ -34,12 +34,13 @@ constexpr double kMaxFinishRate = 1000, kMaxFinishSeconds = 10, kMaxAmplitude = 
 /// Mean length of the third derivative of one part of the motion.
 struct Jerk {
   std::string part;  ///< "body", "face", "action units", "angles"
-  std::string unit;  ///< "pixels/s^3"
+  std::string unit;  ///< "shoulder lengths/s^3"
   double value = 0;
 };
 
 struct Finished {
   Motion motion;
+  /// Both at the frame rate before, for jerk of more frames a second sees more of the same motion.
   std::vector<Jerk> before, after;
   std::vector<std::string> notes;
 };

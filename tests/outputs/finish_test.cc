@@ -186,7 +186,8 @@ TEST(FinishTest, JerkHasItsUnit) {
   const std::vector<Jerk> jerk = MeanJerk(motion);
   ASSERT_EQ(jerk.size(), 3u);
   EXPECT_EQ(jerk[0].part, "body");
-  EXPECT_NEAR(jerk[0].value, 6.0 / 64 * std::sqrt(5.0) * 1000, 1e-2);
+  EXPECT_NEAR(jerk[0].value, 6.0 / 64 * std::sqrt(5.0) * 1000 / 167, 1e-4);
+  EXPECT_EQ(jerk[0].unit, "shoulder lengths/s^3");
   EXPECT_EQ(jerk[1].part, "action units");
   EXPECT_NEAR(jerk[1].value, 6.0 / 64 * 1000, 1e-2);
   EXPECT_EQ(jerk[2].unit, "rad/s^3");
@@ -197,7 +198,7 @@ TEST(FinishTest, AllTogether) {
   const Motion motion = Make(64, 15, Wave, {16, 32, 48});
   const auto done = Finish(motion, {.frame_rate = 60, .smooth = 0.2, .amplitude = 0.5});
   ASSERT_TRUE(done.ok());
-  const Motion want = Clamp(Smooth(Resample(Amplify(CrossFade(motion, 0.2), 0.5), 60), 0.2));
+  const Motion want = Clamp(Smooth(Resample(Amplify(CrossFade(motion, 0.3), 0.5), 60), 0.2));
   EXPECT_TRUE(Same(done->motion, want));
   EXPECT_LT(done->after[0].value, done->before[0].value);
   const auto fewer = Finish(motion, {.frame_rate = 5, .crossfade = 0, .smooth = 0.5});
