@@ -12,15 +12,27 @@
 
 namespace gestus::cli {
 
-enum class Command { kInfer, kInfo, kStyle, kFeatures, kCheck, kVersion, kHelp };
+enum class Command {
+  kInfer,
+  kInfo,
+  kStyle,
+  kStyleInfo,
+  kStyleBlend,
+  kStyleDistance,
+  kStyleGallery,
+  kFeatures,
+  kCheck,
+  kVersion,
+  kHelp
+};
 
 struct Arguments {
   Command command = Command::kInfer;
   std::string weights;
-  std::vector<std::string> inputs;  ///< kStyle: the clip
+  std::vector<std::string> inputs;  ///< kStyle: clips; kStyleInfo and so on: styles
   std::string words;                ///< a transcript, whatever it looks like
-  std::string output;               ///< never empty for kInfer, kStyle and kFeatures
-  double pose_rate = 0;             ///< frames per second of OpenPose's files; 0: found out
+  std::string output;  ///< never empty for kInfer, kStyle, kFeatures and what makes files of styles
+  double pose_rate = 0;  ///< frames per second of OpenPose's files; 0: found out
   std::string style;
   std::string network;
   std::string isa;
