@@ -191,7 +191,7 @@ class StyleTest(CliTest):
     def test_odd_names(self):
         row = self.random_styles(1)[0]
         for name in ("a:b.style", "ü 日.style", "<script>alert(1)<", "-", "new\nline", "a\x1b[31m",
-                     "x:2"):
+                     "x:2", os.fsdecode(b"\xff\xc3.style")):
             self.styles([row], ["./" + name])
             self.good("style", "blend", f"./{name}:1", "-o", "c.style")
             np.testing.assert_array_equal(self.load("c.style")["style"], row)
@@ -202,7 +202,8 @@ class StyleTest(CliTest):
             with open(self.path("g.html"), encoding="utf-8") as file:
                 text = file.read()
             page = Page(text)
-            self.assertEqual(page.json["names"][0], name.removesuffix(".style"))
+            shown = os.fsencode(name.removesuffix(".style")).decode("utf-8", "replace")
+            self.assertEqual(page.json["names"][0], shown)
             self.assertEqual(page.tags.count("script"), 2)
 
     # distance
