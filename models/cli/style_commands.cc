@@ -122,11 +122,9 @@ std::string InfoText(const Named& named, const Collection& collection) {
       {"network", style.network.empty() ? "not known" : OneLine(style.network)},
       {"values", Grouped(style.values.size())},
       {"norm", Significant(styles::Norm(style.values), 6)}};
-  for (const Part& part : style.parts) {
-    const styles::Rows values = styles::RowsOf({named}, part);
+  for (const Part& part : style.parts)
     rows.push_back({part.name, Grouped(static_cast<std::uint64_t>(part.width)) + " values, norm " +
-                                   Significant(styles::Norm(values[0]), 6)});
-  }
+                                   Significant(styles::Norm(styles::ValuesOf(style, part)), 6)});
   for (std::size_t i = 0; i < style.made_of.size(); ++i)
     rows.push_back({i == 0 ? "made of" : "", SourceText(style.made_of[i])});
   if (style.made_of.empty()) rows.push_back({"made of", "not known"});
@@ -147,7 +145,7 @@ void InfoJson(const Named& named, JsonWriter* json) {
         .Member("name", part.name)
         .Member("begin", part.begin)
         .Member("width", part.width)
-        .Member("norm", styles::Norm(styles::RowsOf({named}, part)[0]))
+        .Member("norm", styles::Norm(styles::ValuesOf(style, part)))
         .EndObject();
   json->EndArray().Key("made_of").BeginArray();
   for (const styles::Source& source : style.made_of)

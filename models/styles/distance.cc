@@ -31,12 +31,14 @@ double EuclideanDistance(std::span<const float> x, std::span<const float> y) {
   return std::sqrt(sum);
 }
 
+std::span<const float> ValuesOf(const Style& style, const Part& part) {
+  return std::span(style.values)
+      .subspan(static_cast<std::size_t>(part.begin), static_cast<std::size_t>(part.width));
+}
+
 Rows RowsOf(const std::vector<Named>& styles, const Part& part) {
   Rows rows;
-  for (const Named& named : styles)
-    rows.push_back(
-        std::span(named.style.values)
-            .subspan(static_cast<std::size_t>(part.begin), static_cast<std::size_t>(part.width)));
+  for (const Named& named : styles) rows.push_back(ValuesOf(named.style, part));
   return rows;
 }
 

@@ -18,9 +18,14 @@ std::optional<double> CosineDistance(std::span<const float> x, std::span<const f
 /// |x - y|
 double EuclideanDistance(std::span<const float> x, std::span<const float> y);
 
-/// The values of one part of every style.
+/// The values of one part, which live in `style`.
+std::span<const float> ValuesOf(const Style& style, const Part& part);
+std::span<const float> ValuesOf(Style&&, const Part&) = delete;
+
+/// The same of every style.
 using Rows = std::vector<std::span<const float>>;
 Rows RowsOf(const std::vector<Named>& styles, const Part& part);
+Rows RowsOf(std::vector<Named>&&, const Part&) = delete;
 
 /// The whole style as a part, "style", and behind it the parts that the first style that knows them
 /// has.
