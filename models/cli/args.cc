@@ -2,6 +2,7 @@
 #include "models/cli/args.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 
 namespace gestus::cli {
 namespace {
@@ -11,7 +12,9 @@ Examples:
   infer-cli weights.fb speech.wav --words speech.json --style anna/ -o motion.npz
   infer-cli weights.fb speech.wav --html motion.html    the same to watch, in a browser
   infer-cli weights.fb arrays.npz                       motion into arrays.out.npz
-  infer-cli style weights.fb anna/ -o anna.style        a speaker's style, once and for all
+  infer-cli style extract weights.fb anna/ -o anna.style
+                                                        a speaker's style, once and for all
+  infer-cli style blend anna.style:0.7 bob.style:0.3 -o both.style
   infer-cli features weights.fb speech.wav speech.json  what the networks are fed with
   infer-cli export weights.fb m.npz --export bvh=m.bvh  motion for other programs
   infer-cli info weights.fb                             what a file holds, takes and gives
@@ -150,6 +153,80 @@ CLI::App* AddEval(CLI::App* app, Arguments* a) {
   return eval;
 }
 
+// What becomes of the motion; without any of these it stays as the network said it.
+std::vector<CLI::Option*> AddFinish(CLI::App* app, outputs::FinishOptions* options) {
+  std::vector<CLI::Option*> all = {
+      app->add_option("--fps", options->frame_rate,
+                      "Frames per second of the motion; default: the network's")
+          ->type_name("FPS")
+          ->check(CLI::Range(1.0, outputs::kMaxFinishRate, "")),
+      app->add_option("--crossfade", options->crossfade,
+                      "Seconds over which the jump at a segment's border fades on each side; "
+                      "default 0.3, where any of these options is given")
+          ->type_name("SECONDS")
+          ->check(CLI::Range(0.0, outputs::kMaxFinishSeconds, "")),
+      app->add_option("--smooth", options->smooth,
+                      "Seconds of motion that make each smoothed frame; default 0, not at all")
+          ->type_name("SECONDS")
+          ->check(CLI::Range(0.0, outputs::kMaxFinishSeconds, "")),
+      app->add_option(
+             "--amplitude", options->amplitude,
+             "How far motion goes from the rest pose: 0 still, 1 as it is (default), to 10")
+          ->type_name("A")
+          ->check(CLI::Range(0.0, outputs::kMaxAmplitude, "")),
+      app->add_flag_callback(
+          "--linear", [options] { options->interpolation = outputs::Interpolation::kLinear; },
+          "Straight lines between frames instead of cubics without overshoot")};
+  for (CLI::Option* option : all) option->group("Finish");
+  return all;
+}
+
+// `infer-cli style`, and its own commands.
+struct StyleCommands {
+  CLI::App *all = nullptr, *info = nullptr, *blend = nullptr, *distance = nullptr,
+           *gallery = nullptr;
+};
+
+void AddExtract(CLI::App* app, Arguments* a) {
+  app->add_option("WEIGHTS", a->weights, "Weights file")->type_name("FILE.fb");
+  app->add_option("CLIP", a->inputs,
+                  "Recording, words and poses of the speaker; or folders of these and arrays "
+                  "(.npz), each a clip of its own")
+      ->type_name("FILE");
+  app->add_option("-o,--output", a->output, "The style file")->type_name("FILE.style");
+  AddRecording(app, a);
+  AddCompute(app, a);
+  AddShared(app, a);
+}
+
+CLI::App* AddOnStyles(CLI::App* style, Arguments* a, const char* name, const char* meaning,
+                      const char* takes, const char* output) {
+  CLI::App* app = style->add_subcommand(name, meaning);
+  app->add_option("STYLE", a->inputs, takes)->type_name("FILE")->required();
+  if (output != nullptr)
+    app->add_option("-o,--output", a->output, output)->type_name("FILE")->required();
+  app->add_flag("--json", a->json, "Report as JSON on the standard output");
+  return app;
+}
+
+StyleCommands AddStyle(CLI::App* app, Arguments* a) {
+  constexpr const char* kTakes = "Style files, and the weights file that made them if it is there";
+  StyleCommands style;
+  style.all = app->add_subcommand("style", "Compute, mix, compare and show speakers' styles");
+  style.all->require_subcommand(0, 1);
+  AddExtract(style.all, a);  // `extract` may be left out
+  AddExtract(style.all->add_subcommand("extract", "Compute a speaker's style from clips, to reuse"),
+             a);
+  style.info = AddOnStyles(style.all, a, "info", "Show what style files hold", kTakes, nullptr);
+  style.blend = AddOnStyles(style.all, a, "blend", "Mix styles into one",
+                            "Style files, each with :WEIGHT or not", "The style file");
+  style.distance =
+      AddOnStyles(style.all, a, "distance", "How far styles are from one another", kTakes, nullptr);
+  style.gallery = AddOnStyles(style.all, a, "gallery", "A page with maps of styles", kTakes,
+                              "The page (.html)");
+  return style;
+}
+
 // "a/speech.wav" -> "a/speech.out.npz"
 std::string DefaultOutput(std::string input, const std::string& ending) {
   while (input.size() > 1 && input.ends_with('/')) input.pop_back();
@@ -174,6 +251,8 @@ Result<Arguments> ParseArguments(int argc, const char* const* argv) {
   app.footer(kFooter);
   app.require_subcommand(0, 1);
   AddInfer(&app, &a);
+  outputs::FinishOptions finish;
+  const std::vector<CLI::Option*> finishing = AddFinish(&app, &finish);
   app.add_flag("--version", version, "Version, instruction sets and compiler");
 
   CLI::App* info = app.add_subcommand("info", "Show what a weights file holds, takes and gives");
@@ -181,17 +260,7 @@ Result<Arguments> ParseArguments(int argc, const char* const* argv) {
   info->add_flag("--plan", a.plan, "The planned ops and where the arena keeps their values");
   AddShared(info, &a);
 
-  CLI::App* style = app.add_subcommand("style", "Compute a speaker's style from a clip, to reuse");
-  style->add_option("WEIGHTS", a.weights, "Weights file")->type_name("FILE.fb")->required();
-  style
-      ->add_option("CLIP", a.inputs,
-                   "Recording, words and poses of the speaker, arrays (.npz), or a folder of these")
-      ->type_name("FILE")
-      ->required();
-  style->add_option("-o,--output", a.output, "The style file")->type_name("FILE.style")->required();
-  AddRecording(style, &a);
-  AddCompute(style, &a);
-  AddShared(style, &a);
+  const StyleCommands style = AddStyle(&app, &a);
 
   CLI::App* features =
       app.add_subcommand("features", "Write what recordings and words are made into, every stage");
@@ -237,8 +306,19 @@ Result<Arguments> ParseArguments(int argc, const char* const* argv) {
   }
   if (version) a.command = Command::kVersion;
   if (info->parsed()) a.command = Command::kInfo;
-  if (style->parsed()) a.command = Command::kStyle;
   if (convert->parsed()) a.command = Command::kExport;
+  if (style.all->parsed()) a.command = Command::kStyle;
+  for (const auto& [app_of, command] : {std::pair(style.info, Command::kStyleInfo),
+                                        {style.blend, Command::kStyleBlend},
+                                        {style.distance, Command::kStyleDistance},
+                                        {style.gallery, Command::kStyleGallery}}) {
+    if (app_of->parsed()) a.command = command;
+  }
+  if (a.command == Command::kStyle) {
+    if (a.weights.empty()) return Missing("WEIGHTS");
+    if (a.inputs.empty()) return Missing("CLIP");
+    if (a.output.empty()) return Missing("--output");
+  }
   if (check->parsed()) a.command = Command::kCheck;
   if (eval->parsed()) a.command = Command::kEval;
   if (features->parsed()) {
@@ -246,6 +326,8 @@ Result<Arguments> ParseArguments(int argc, const char* const* argv) {
     if (a.output.empty()) a.output = DefaultOutput(a.inputs.front(), ".features.npz");
   }
   if (a.command != Command::kInfer) return a;
+  const auto given = [](const CLI::Option* option) { return option->count() > 0; };
+  if (std::any_of(finishing.begin(), finishing.end(), given)) a.finish = finish;
   if (a.weights.empty()) return Missing("WEIGHTS");
   if (a.inputs.empty() && !a.words.empty()) a.inputs = {a.words};
   if (a.inputs.empty()) return Missing("INPUT");

@@ -2,15 +2,31 @@
 #ifndef GESTUS_MODELS_CLI_ARGS_H_
 #define GESTUS_MODELS_CLI_ARGS_H_
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "engine/status.h"
 #include "models/network.h"
+#include "models/outputs/finish.h"
 
 namespace gestus::cli {
 
-enum class Command { kInfer, kInfo, kStyle, kFeatures, kExport, kEval, kCheck, kVersion, kHelp };
+enum class Command {
+  kInfer,
+  kInfo,
+  kStyle,
+  kStyleInfo,
+  kStyleBlend,
+  kStyleDistance,
+  kStyleGallery,
+  kFeatures,
+  kExport,
+  kEval,
+  kCheck,
+  kVersion,
+  kHelp
+};
 
 /// infer-cli eval
 struct EvalOptions {
@@ -24,10 +40,10 @@ struct EvalOptions {
 struct Arguments {
   Command command = Command::kInfer;
   std::string weights;
-  std::vector<std::string> inputs;  ///< kStyle: the clip
+  std::vector<std::string> inputs;  ///< kStyle: clips; kStyleInfo and so on: styles
   std::string words;                ///< a transcript, whatever it looks like
-  std::string output;               ///< never empty for kInfer, kStyle and kFeatures
-  double pose_rate = 0;             ///< frames per second of OpenPose's files; 0: found out
+  std::string output;  ///< never empty for kInfer, kStyle, kFeatures and what makes files of styles
+  double pose_rate = 0;  ///< frames per second of OpenPose's files; 0: found out
   std::string style;
   std::vector<std::string> exports;  ///< FORMAT=PATH each
   std::vector<float> stance;         ///< X, Y and length of the shoulder; empty: the default
@@ -39,6 +55,7 @@ struct Arguments {
   int threads = 1;
   int repeat = 1;
   models::Sampling sampling;
+  std::optional<outputs::FinishOptions> finish;  ///< as one of its options was given
   bool profile = false;
   bool plan = false;
   bool taps = false;

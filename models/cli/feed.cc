@@ -5,6 +5,7 @@
 #include "models/cli/npz.h"
 #include "models/cli/report.h"
 #include "models/cli/style.h"
+#include "models/cli/style_file.h"
 #include "weights_generated.h"
 
 namespace gestus::cli {

@@ -5,6 +5,7 @@
 
 #include "models/cli/export.h"
 #include "models/cli/feed.h"
+#include "models/cli/finish.h"
 #include "models/cli/inputs.h"
 #include "models/cli/machine.h"
 #include "models/cli/npz.h"
@@ -150,25 +151,29 @@ Status RunInfer(const Arguments& arguments) {
   Result<Views> views = Views::Open(arguments, *setup);
   if (!views.ok()) return views.status();
 
-  const Result<Arrays> outputs = RunAll(arguments, &*setup, &*feed, &report);
+  Result<Arrays> outputs = RunAll(arguments, &*setup, &*feed, &report);
   if (!outputs.ok()) return outputs.status();
+  const auto finished = FinishOutputs(arguments, *setup, &*outputs, &report);
+  if (!finished.ok()) return finished.status();
   GESTUS_RETURN_IF_ERROR(WriteNpz(*outputs, &*file).In(arguments.output));
   std::vector<std::string> written;
-  GESTUS_RETURN_IF_ERROR(
-      views->Write(arguments, *given, *setup, *outputs, &written, &report.notes));
-  GESTUS_RETURN_IF_ERROR(file->Commit().In(arguments.output));
-  if (!exports->files.empty()) {
+  if (views->Any() || !exports->files.empty()) {
     const Result<outputs::Motion> motion =
-        outputs::MotionOf(*setup->weights->FindNetwork(setup->name), *outputs);
+        finished->has_value()
+            ? Result<outputs::Motion>((*finished)->motion)
+            : outputs::MotionOf(*setup->weights->FindNetwork(setup->name), *outputs);
     if (!motion.ok()) return motion.status().In(arguments.weights);
+    GESTUS_RETURN_IF_ERROR(
+        views->Write(arguments, *given, *setup, *motion, &written, &report.notes));
     GESTUS_RETURN_IF_ERROR(WriteExports(*motion, *exports));
   }
+  GESTUS_RETURN_IF_ERROR(file->Commit().In(arguments.output));
 
   report.notes.insert(report.notes.begin(), feed->account.notes.begin(), feed->account.notes.end());
   const std::vector<std::string> exported = exports->Lines();
-  const InferReport said{arguments,        *setup,       feed->account.used,
-                         feed->style_used, feed->arrays, *outputs,
-                         exported,         written,      report};
+  const InferReport said{arguments,    *setup,   feed->account.used, feed->style_used,
+                         feed->arrays, *outputs, exported,           written,
+                         report,       *finished};
   return Print(arguments.json ? said.Json() : said.Text());
 }
 

@@ -20,6 +20,7 @@
 #include "models/cli/machine.h"
 #include "models/cli/setup.h"
 #include "models/cli/style.h"
+#include "models/cli/style_commands.h"
 #include "models/io/text.h"
 
 namespace {
@@ -50,6 +51,14 @@ Status Run(int argc, const char* const* argv) {
       return RunInfo(*arguments);
     case Command::kStyle:
       return RunStyle(*arguments);
+    case Command::kStyleInfo:
+      return RunStyleInfo(*arguments);
+    case Command::kStyleBlend:
+      return RunStyleBlend(*arguments);
+    case Command::kStyleDistance:
+      return RunStyleDistance(*arguments);
+    case Command::kStyleGallery:
+      return RunStyleGallery(*arguments);
     case Command::kFeatures:
       return RunFeatures(*arguments);
     case Command::kExport:

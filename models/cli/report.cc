@@ -37,6 +37,44 @@ std::string ArraysText(const models::Arrays& arrays) {
 
 namespace {
 
+// "body 12.3 -> 4.56 shoulder lengths/s^3"
+std::string JerkText(const outputs::Finished& finished) {
+  std::string text;
+  for (const outputs::Jerk& before : finished.before) {
+    text += (text.empty() ? "" : ", ") + before.part + " " + Significant(before.value, 3);
+    for (const outputs::Jerk& after : finished.after) {
+      if (after.part == before.part) text += " -> " + Significant(after.value, 3);
+    }
+    text += " " + before.unit;
+  }
+  return text;
+}
+
+void JerkJson(JsonWriter* json, const char* key, const std::vector<outputs::Jerk>& jerks) {
+  json->Key(key).BeginArray();
+  for (const outputs::Jerk& jerk : jerks) {
+    json->BeginObject().Member("part", jerk.part).Member("unit", jerk.unit);
+    json->Member("value", jerk.value).EndObject();
+  }
+  json->EndArray();
+}
+
+void FinishJson(JsonWriter* json, const outputs::FinishOptions& options,
+                const outputs::Finished& finished) {
+  const bool linear = options.interpolation == outputs::Interpolation::kLinear;
+  json->Key("finish")
+      .BeginObject()
+      .Member("frames", finished.motion.frames)
+      .Member("frame_rate", finished.motion.frame_rate)
+      .Member("interpolation", linear ? "linear" : "monotone")
+      .Member("crossfade", options.crossfade)
+      .Member("smooth", options.smooth)
+      .Member("amplitude", options.amplitude);
+  JerkJson(json, "jerk_before", finished.before);
+  JerkJson(json, "jerk_after", finished.after);
+  json->EndObject();
+}
+
 void ArraysJson(JsonWriter* json, const char* key, const models::Arrays& arrays) {
   json->Key(key).BeginArray();
   for (const auto& [name, array] : arrays) {
@@ -130,6 +168,7 @@ std::string InferReport::Text() const {
   }
   for (const std::string& line : exports) text += "\nwrote  " + line;
   for (const std::string& line : views) text += "\nwrote  " + line;
+  if (finished.has_value() && !finished->before.empty()) text += "\njerk   " + JerkText(*finished);
   text += "\nspeed  " + Seconds(timing.median) + " a segment";
   if (arguments.repeat > 1) text += " (median; p99 " + Seconds(timing.p99) + ")";
   text += ", " + Count(timing.segments, "segment");
@@ -170,6 +209,7 @@ std::string InferReport::Json() const {
       .Member("threads", arguments.threads)
       .Member("isa", setup.kernels->name)
       .Member("notes", run.notes);
+  if (finished.has_value()) FinishJson(&json, *arguments.finish, *finished);
   if (arguments.plan) json.Member("plan", setup.network->PlanText());
   if (arguments.profile) ProfileJson(&json, run.ops);
   json.EndObject();

@@ -2,12 +2,14 @@
 #ifndef GESTUS_MODELS_CLI_REPORT_H_
 #define GESTUS_MODELS_CLI_REPORT_H_
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "models/cli/args.h"
 #include "models/cli/setup.h"
 #include "models/network.h"
+#include "models/outputs/finish.h"
 
 namespace gestus::cli {
 
@@ -29,6 +31,7 @@ struct InferReport {
   const std::vector<std::string>& exports;  ///< files of other programs, a line each
   const std::vector<std::string>& views;    ///< of --html, --svg and --mp4
   const models::RunReport& run;
+  const std::optional<outputs::Finished>& finished;
 
   std::string Text() const;
   std::string Json() const;

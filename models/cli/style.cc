@@ -1,35 +1,26 @@
-// Reading and writing .style files, and taking styles from clips.
+// Taking styles from clips, and giving them to a network.
 #include "models/cli/style.h"
 
 #include <algorithm>
-#include <bit>
 
 #include "models/cli/feed.h"
 #include "models/cli/inputs.h"
 #include "models/cli/json.h"
 #include "models/cli/npy.h"
 #include "models/cli/npz.h"
+#include "models/cli/style_file.h"
 #include "models/io/text.h"
+#include "models/segments.h"
+#include "models/styles/blend.h"
 
 namespace gestus::cli {
 namespace {
 
-using models::Array;
 using models::Arrays;
 using models::ArraySpec;
 
 constexpr const char* kStyle = "style";
 constexpr const char* kClipPrefix = "style_";
-constexpr const char* kChecksum = "weights_checksum";
-
-Array ChecksumArray(std::uint64_t checksum) {
-  Array array;
-  array.dtype = DType::kI32;
-  array.shape = {2};
-  array.i32 = {std::bit_cast<std::int32_t>(static_cast<std::uint32_t>(checksum)),
-               std::bit_cast<std::int32_t>(static_cast<std::uint32_t>(checksum >> 32))};
-  return array;
-}
 
 bool Contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
@@ -40,6 +31,13 @@ const ArraySpec* FindInput(const models::Network& network, const std::string& na
     if (spec.name == name) return &spec;
   }
   return nullptr;
+}
+
+std::uint64_t SegmentsOf(const styles::Style& style) {
+  std::uint64_t segments = 0;
+  for (const styles::Source& source : style.made_of)
+    segments += static_cast<std::uint64_t>(source.segments);
+  return segments;
 }
 
 Status ReadClipArrays(const Setup& setup, const std::string& path, bool whole, Arrays* inputs) {
@@ -65,18 +63,19 @@ Status ReadClipArrays(const Setup& setup, const std::string& path, bool whole, A
   return Status();
 }
 
-std::string Summary(const Arguments& arguments, const Setup& setup, const Array& style,
+std::string Summary(const Arguments& arguments, const Setup& setup, const styles::Style& style,
                     const features::Account& account) {
   std::string text;
   for (const std::string& line : account.used) text += "read " + line + "\n";
-  text += arguments.output + ": the style of " + arguments.Input() + ", " + ShapeText(style.shape) +
-          " float32, for use with " + arguments.weights + "\n";
+  text += arguments.output + ": the style of " + arguments.Input() + ", " +
+          ShapeText({static_cast<std::int64_t>(style.values.size())}) + " float32 of " +
+          Count(SegmentsOf(style), "segment") + ", for use with " + arguments.weights + "\n";
   for (const std::string& note : account.notes) text += "note: " + note + "\n";
   if (!setup.Trained()) text += std::string("warning: ") + kUntrained + "\n";
   return text;
 }
 
-std::string SummaryJson(const Arguments& arguments, const Setup& setup, const Array& style,
+std::string SummaryJson(const Arguments& arguments, const Setup& setup, const styles::Style& style,
                         const features::Account& account) {
   JsonWriter json;
   json.BeginObject()
@@ -84,11 +83,68 @@ std::string SummaryJson(const Arguments& arguments, const Setup& setup, const Ar
       .Member("trained", setup.Trained())
       .Member("clip", arguments.Input())
       .Member("output", arguments.output)
-      .Member("shape", style.shape)
+      .Member("shape", std::vector<std::int64_t>{static_cast<std::int64_t>(style.values.size())})
+      .Member("segments", SegmentsOf(style))
       .Member("used", account.used)
       .Member("notes", account.notes)
       .EndObject();
   return json.text();
+}
+
+/// One recording of a speaker: the files of it.
+struct Clip {
+  std::string name;
+  Inputs inputs;
+};
+
+/// Folders and arrays are a clip each, where nothing else is given; other files together are one.
+Result<std::vector<Clip>> ClipsOf(const Arguments& arguments) {
+  bool apart = arguments.inputs.size() > 1 && arguments.words.empty();
+  for (const std::string& path : arguments.inputs) {
+    const Result<InputKind> kind = Recognise(path);
+    if (!kind.ok()) return kind.status();
+    apart = apart && (*kind == InputKind::kFolder || *kind == InputKind::kArrays);
+  }
+  std::vector<std::vector<std::string>> groups;
+  if (apart) {
+    for (const std::string& path : arguments.inputs) groups.push_back({path});
+  } else {
+    groups.push_back(arguments.inputs);
+  }
+  std::vector<Clip> clips;
+  for (const std::vector<std::string>& paths : groups) {
+    Result<Inputs> inputs = SortInputs(paths, arguments.words);
+    if (!inputs.ok()) return inputs.status();
+    std::string name;
+    for (const std::string& path : paths) name += (name.empty() ? "" : ", ") + LastPart(path);
+    clips.push_back({name, *std::move(inputs)});
+  }
+  return clips;
+}
+
+/// The style of one clip; its weight is the number of its segments.
+Result<styles::Ingredient> TakeStyle(const Arguments& arguments, const Clip& clip,
+                                     const Setup& setup, features::FrontEnd* front_end,
+                                     features::Account* account) {
+  Arrays arrays;
+  GESTUS_RETURN_IF_ERROR(ReadClip(arguments, clip.inputs, setup, front_end, account, &arrays));
+  // Given a style clip and nothing else, a network computes the style and nothing else.
+  models::RunOptions options;
+  options.threads = arguments.threads;
+  models::RunReport report;
+  Result<Arrays> outputs = setup.network->Run(arrays, options, &report);
+  if (!outputs.ok()) return outputs.status().In(clip.name);
+  account->notes.insert(account->notes.end(), report.notes.begin(), report.notes.end());
+  const auto style = outputs->find(kStyle);
+  if (style == outputs->end()) return NoStyle(setup);
+  const auto windows =
+      models::Windows(arrays.at("style_speech").shape[0], front_end->spec().style_frames);
+  styles::Ingredient taken;
+  taken.from = {clip.name, {}};
+  taken.from.style.values = style->second.f32;
+  taken.from.style.made_of = {{clip.name, 1, static_cast<std::int64_t>(windows.size())}};
+  taken.weight = static_cast<double>(windows.size());
+  return taken;
 }
 
 }  // namespace
@@ -102,28 +158,23 @@ Status NoStyle(const Setup& setup) {
                                             " has no style, expected a network that takes one");
 }
 
-Result<bool> IsStyleFile(const std::string& path) {
-  const Result<std::vector<std::string>> names = ListNpz(path);
-  if (!names.ok()) return names.status();
-  return Contains(*names, kChecksum);
-}
-
 Status LoadStyleFile(const Setup& setup, const std::string& path, Arrays* inputs) {
   const ArraySpec* style = FindInput(*setup.network, kStyle);
   if (style == nullptr) return NoStyle(setup);
-  ArraySpec required = *style;
-  required.required = true;
-  ArraySpec checksum;
-  checksum.name = kChecksum;
-  checksum.dtype = DType::kI32;
-  Result<NpzContents> file = ReadNpz(path, {required, checksum});
-  if (!file.ok()) return file.status();
-  if (file->arrays.at(kChecksum).i32 != ChecksumArray(setup.weights->checksum()).i32) {
-    return Status(Code::kBadInput, path + ": " + kChecksum + ": made by other weights, expected " +
+  Result<styles::Style> read = ReadStyleFile(path);
+  if (!read.ok()) return read.status();
+  if (read->weights_checksum != setup.weights->checksum()) {
+    return Status(Code::kBadInput, path + ": weights_checksum: made by other weights, expected " +
                                        setup.weights->path());
   }
-  GESTUS_RETURN_IF_ERROR(models::CheckArray(*style, file->arrays.at(kStyle)).In(path));
-  (*inputs)[kStyle] = std::move(file->arrays.at(kStyle));
+  if (!read->network.empty() && read->network != setup.name)
+    return Status(Code::kBadInput,
+                  path + ": network: made by " + read->network + ", expected " + setup.name);
+  models::Array array;
+  array.shape = {static_cast<std::int64_t>(read->values.size())};
+  array.f32 = std::move(read->values);
+  GESTUS_RETURN_IF_ERROR(models::CheckArray(*style, array).In(path));
+  (*inputs)[kStyle] = std::move(array);
   return Status();
 }
 
@@ -136,8 +187,8 @@ Status LoadPartOfClip(const Setup& setup, const std::string& path, Arrays* input
 }
 
 Status RunStyle(const Arguments& arguments) {
-  const Result<Inputs> given = SortInputs(arguments.inputs, arguments.words);
-  if (!given.ok()) return given.status();
+  const Result<std::vector<Clip>> clips = ClipsOf(arguments);
+  if (!clips.ok()) return clips.status();
   // In a bundle the network is the one with a style, whatever the clip calls its arrays.
   Result<Setup> setup =
       OpenNetwork(arguments, [](const fb::Network&) { return std::vector<std::string>{kStyle}; });
@@ -146,28 +197,29 @@ Status RunStyle(const Arguments& arguments) {
   network_options.kernels = setup->kernels;
   auto front_end = features::FrontEnd::Make(setup->weights, setup->name, network_options);
   if (!front_end.ok()) return front_end.status();
-  features::Account account;
-  Arrays clip;
-  GESTUS_RETURN_IF_ERROR(ReadClip(arguments, *given, *setup, front_end->get(), &account, &clip));
+  if (FindInput(*setup->network, kStyle) == nullptr) return NoStyle(*setup);
   Result<AtomicFile> file = AtomicFile::Create(arguments.output);
   if (!file.ok()) return file.status().In(arguments.output);
 
-  // Given a style clip and nothing else, a network computes the style and nothing else.
-  models::RunOptions options;
-  options.threads = arguments.threads;
-  models::RunReport report;
-  Result<Arrays> outputs = setup->network->Run(clip, options, &report);
-  if (!outputs.ok()) return outputs.status().In(arguments.Input());
-  account.notes.insert(account.notes.end(), report.notes.begin(), report.notes.end());
-  const auto style = outputs->find(kStyle);
-  if (style == outputs->end()) return NoStyle(*setup);
-
-  const Arrays contents = {{kStyle, style->second},
-                           {kChecksum, ChecksumArray(setup->weights->checksum())}};
-  GESTUS_RETURN_IF_ERROR(WriteNpz(contents, &*file).In(arguments.output));
-  GESTUS_RETURN_IF_ERROR(file->Commit().In(arguments.output));
-  return Print(arguments.json ? SummaryJson(arguments, *setup, style->second, account)
-                              : Summary(arguments, *setup, style->second, account));
+  features::Account account;
+  std::vector<styles::Ingredient> taken;
+  for (const Clip& clip : *clips) {
+    Result<styles::Ingredient> one = TakeStyle(arguments, clip, *setup, front_end->get(), &account);
+    if (!one.ok()) return one.status();
+    taken.push_back(*std::move(one));
+  }
+  Result<styles::Blend> mean = styles::MakeBlend(taken);
+  if (!mean.ok()) return mean.status();
+  styles::Style& style = mean->style;
+  style.weights_checksum = setup->weights->checksum();
+  style.network = setup->name;
+  Result<std::vector<styles::Part>> parts =
+      styles::PartsOf(*setup->weights->FindNetwork(setup->name));
+  if (!parts.ok()) return parts.status();
+  style.parts = *std::move(parts);
+  GESTUS_RETURN_IF_ERROR(WriteStyleFile(style, arguments.output, &*file));
+  return Print(arguments.json ? SummaryJson(arguments, *setup, style, account)
+                              : Summary(arguments, *setup, style, account));
 }
 
 }  // namespace gestus::cli

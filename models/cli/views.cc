@@ -153,18 +153,16 @@ Result<Views> Views::Open(const Arguments& arguments, const Setup& setup) {
 }
 
 Status Views::Write(const Arguments& arguments, const Inputs& inputs, const Setup& setup,
-                    const models::Arrays& outputs, std::vector<std::string>* written,
+                    const outputs::Motion& motion, std::vector<std::string>* written,
                     std::vector<std::string>* notes) {
   if (!Any()) return Status();
   const fb::Network& record = *setup.weights->FindNetwork(setup.name);
-  Result<Motion> motion = outputs::MotionOf(record, outputs);
-  if (!motion.ok()) return motion.status();
   player::Show show;
   show.title = OneLine(Name(inputs.audio.empty() ? arguments.inputs.front() : inputs.audio));
   show.network = setup.network->kind();
   show.weights = WeightsText(setup);
   show.trained = setup.Trained();
-  show.prediction = *std::move(motion);
+  show.prediction = motion;
   show.source = std::move(source_);
   show.target = std::move(target_);
   GESTUS_RETURN_IF_ERROR(AddRecording(inputs, record, &show));

@@ -24,7 +24,7 @@ class Views {
   bool Any() const { return html_ || svg_ || mp4_; }
   /// Writes them; `written` gets a line for each, `notes` what a user should know.
   Status Write(const Arguments& arguments, const Inputs& inputs, const Setup& setup,
-               const models::Arrays& outputs, std::vector<std::string>* written,
+               const outputs::Motion& motion, std::vector<std::string>* written,
                std::vector<std::string>* notes);
 
  private:

@@ -18,6 +18,7 @@ FRONT_ENDS = {
     "models/features": {"models/io", "models/text", "models/audio", "models/prosody",
                         "models/words", "models/motion", "models"},
     "models/outputs": {"models/io", "models/motion", "models"},
+    "models/styles": {"models/io", "models"},
     "models/player": {"models/io", "models/outputs", "models/words", "models"},
     "models/metrics": {"models/io", "models/outputs", "models"},
 }
@@ -37,7 +38,8 @@ INSIDE = re.compile(r"kernels/(isa/|.*\.inl\.h)")
 # Within the layers libraries meet only where they belong.
 # The probe of the machine's peak is a kernel itself, one that only the benches link.
 PROBE = "bench/peak_probe.cc"
-LIBRARIES = {"xsimd": {"kernels"}, "Eigen": {"bench", "models/audio"}, "unsupported": {"models/audio"},
+LIBRARIES = {"xsimd": {"kernels"}, "Eigen": {"bench", "models/audio", "models/styles"},
+             "unsupported": {"models/audio"},
              "nlohmann": {"models/io", "tests"}, "zip.h": {"models/cli", "tests"},
              "sndfile.h": {"models/audio", "tests"},
              "CLI": {"models/cli"}, "utf8proc.h": {"models/text"}}
