@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "models/cli/eval_sequences.h"
+#include "models/cli/finish.h"
 #include "models/cli/npy.h"
 #include "models/cli/npz.h"
 #include "models/motion/clip.h"
@@ -59,8 +60,8 @@ Result<Arrays> Read(const std::string& path) {
   // Clips of a speaker have the same under other names.
   const std::string prefix = has("pose") || has("face") ? "" : "style_";
   std::vector<ArraySpec> wanted;
-  for (const char* name : {"pose", "face"}) {
-    wanted.emplace_back().name = prefix + name;
+  for (const std::string& name : {prefix + "pose", prefix + "face", std::string(kFrameRate)}) {
+    wanted.emplace_back().name = name;
     wanted.back().required = false;
   }
   for (const char* name : {"lengths", "times_ms"}) {
@@ -212,8 +213,11 @@ void AddCurves(const Arrays& arrays, const std::vector<ArrayLayout>& layouts, Se
 
 Result<Sequence> ReadMotionArrays(const std::string& path, const std::vector<ArrayLayout>& layouts,
                                   double rate, std::vector<std::string>* notes) {
-  const Result<Arrays> arrays = Read(path);
+  Result<Arrays> arrays = Read(path);
   if (!arrays.ok()) return arrays.status();
+  double finished = 0;
+  GESTUS_RETURN_IF_ERROR(TakeFinished(&*arrays, &finished).In(path));
+  if (rate <= 0) rate = finished;
   Sequence sequence;
   const auto face = arrays->find("face");
   if (face != arrays->end() && face->second.shape.size() == 3) {

@@ -1,5 +1,6 @@
 #include "models/cli/export.h"
 
+#include "models/cli/finish.h"
 #include "models/cli/json.h"
 #include "models/cli/npz.h"
 #include "models/cli/setup.h"
@@ -13,13 +14,11 @@ using models::Array;
 using models::Arrays;
 using outputs::Motion;
 
-constexpr const char* kRate = "frame_rate";  // of motion that has been brought to another one
-
 Status Bad(const std::string& what) { return Status(Code::kInvalidArgument, what); }
 
 Result<Arrays> ReadMotion(const std::string& path) {
   std::vector<models::ArraySpec> wanted;
-  for (const char* name : {"pose", "face", "lengths", "times_ms", kRate}) {
+  for (const char* name : {"pose", "face", "lengths", "times_ms", kFrameRate}) {
     models::ArraySpec spec;
     spec.name = name;
     spec.required = false;
@@ -37,27 +36,11 @@ Result<Arrays> ReadMotion(const std::string& path) {
 /// The motion in `arrays`, also of finished ones: at a rate of their own, curves as (frames,
 /// curves).
 Result<Motion> MotionOf(const fb::Network& record, Arrays arrays) {
-  const auto rate = arrays.find(kRate);
-  if (rate == arrays.end()) return outputs::MotionOf(record, arrays);
-  if (rate->second.f32.size() != 1)
-    return Bad(std::string(kRate) + ": " + Count(rate->second.f32.size(), "value") +
-               ", expected 1");
-  const auto face = arrays.find("face");
-  if (face != arrays.end() && arrays.count("pose") == 0 && face->second.shape.size() == 2) {
-    // One sequence, all of it said.
-    Array lengths;
-    lengths.dtype = DType::kI32;
-    lengths.shape = {1, face->second.shape[1]};
-    lengths.i32.assign(static_cast<std::size_t>(face->second.shape[1]),
-                       static_cast<std::int32_t>(face->second.shape[0]));
-    face->second.shape.insert(face->second.shape.begin(), 1);
-    arrays["lengths"] = std::move(lengths);
-    arrays.erase("times_ms");
-  }
-  const double value = rate->second.f32[0];
-  GESTUS_RETURN_IF_ERROR(motion::CheckFrameRate(value, kRate));
-  Result<Motion> motion = outputs::MotionOf(record, arrays, {.frame_rate = value});
-  if (motion.ok()) motion->frame_rate = value;
+  double rate = 0;
+  GESTUS_RETURN_IF_ERROR(TakeFinished(&arrays, &rate));
+  if (rate == 0) return outputs::MotionOf(record, arrays);
+  Result<Motion> motion = outputs::MotionOf(record, arrays, {.frame_rate = rate});
+  if (motion.ok()) motion->frame_rate = rate;
   return motion;
 }
 

@@ -18,6 +18,14 @@ Result<std::optional<outputs::Finished>> FinishOutputs(const Arguments& argument
                                                        const Setup& setup, models::Arrays* arrays,
                                                        models::RunReport* report);
 
+/// The array that finished motion has beside it, one value.
+constexpr const char* kFrameRate = "frame_rate";
+
+/// Makes the arrays of an output file what outputs::MotionOf() takes, where the motion in it was
+/// finished: curves become one sequence again.  `rate` gets its frames per second, 0 where it was
+/// not finished.  The error names the array.
+Status TakeFinished(models::Arrays* arrays, double* rate);
+
 }  // namespace gestus::cli
 
 #endif  // GESTUS_MODELS_CLI_FINISH_H_
