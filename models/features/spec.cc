@@ -42,56 +42,73 @@ std::vector<std::int64_t> Sources(
   return sources;
 }
 
-void ReadZsMstm(const fb::ZsMstm1Config& c, FeatureSpec* spec) {
+// The network's own configuration, in the ranges that the network checks when it is made: a front
+// end may be asked for before that, and what it allocates follows from these numbers.
+void ReadZsMstm(ConfigReader& read, const fb::ZsMstm1Config& c, FeatureSpec* spec) {
   spec->layout = Layout::kFrames;
-  spec->style_frames = c.frames();
-  spec->frames = c.granularity() == fb::Granularity::Segment
-                     ? std::int64_t{c.frames()} * c.context_segments()
-                     : c.frames();
-  spec->mel_bins = c.ast_content()->mel_bins();
-  spec->d_text = c.d_text();
-  spec->frame_rate = Decimal(c.frame_rate());
+  spec->style_frames = spec->frames = read.Size("frames", c.frames(), 1, 1 << 12);
+  if (c.granularity() == fb::Granularity::Segment)
+    spec->frames *= read.Size("context_segments", c.context_segments(), 1, 64);
+  spec->mel_bins = read.Size("mel_bins", c.ast_content()->mel_bins(), 1, 1 << 10);
+  spec->d_text = read.Size("d_text", c.d_text(), 1, 1 << 14);
+  spec->frame_rate = Decimal(read.Rate("frame_rate", c.frame_rate()));
   spec->pose_source =
       c.pose_source() == fb::PoseSource::Data ? PoseSource::kData : PoseSource::kNormalize;
 }
 
-void ReadLayout(const fb::Network& network, FeatureSpec* spec) {
+void ReadLayout(ConfigReader& read, const fb::Network& network, FeatureSpec* spec) {
   switch (network.config_type()) {
     case fb::Config::ZsMstm1Config:
-      return ReadZsMstm(*network.config_as_ZsMstm1Config(), spec);
+      return ReadZsMstm(read, *network.config_as_ZsMstm1Config(), spec);
     case fb::Config::ZsMstm2Config: {
       const fb::ZsMstm2Config& c = *network.config_as_ZsMstm2Config();
-      ReadZsMstm(*c.core(), spec);
-      spec->d_face = c.d_face();
-      spec->d_tags = c.d_tags();
+      ReadZsMstm(read, *c.core(), spec);
+      spec->d_face = read.Size("d_face", c.d_face(), 1, 1 << 10);
+      spec->d_tags = read.Size("d_tags", c.d_tags(), 1, 1 << 10);
       return;
     }
-    case fb::Config::AstConfig:
+    case fb::Config::AstConfig: {
+      const fb::AstConfig& c = *network.config_as_AstConfig();
       spec->layout = Layout::kFrames;
-      spec->frames = spec->style_frames = network.config_as_AstConfig()->frames();
-      spec->mel_bins = network.config_as_AstConfig()->mel_bins();
+      spec->frames = spec->style_frames = read.Size("frames", c.frames(), 1, 1 << 14);
+      spec->mel_bins = read.Size("mel_bins", c.mel_bins(), 1, 1 << 10);
       spec->d_text = 0;
       return;
-    case fb::Config::Model1Config:
+    }
+    case fb::Config::Model1Config: {
+      const fb::Model1Config& c = *network.config_as_Model1Config();
       spec->layout = Layout::kWords;
-      spec->f0_length = network.config_as_Model1Config()->f0_length();
-      spec->d_text = network.config_as_Model1Config()->d_text();
-      spec->text_rows = network.config_as_Model1Config()->text_rows();
+      spec->f0_length = read.Size("f0_length", c.f0_length(), 1, 1 << 12);
+      spec->d_text = read.Size("d_text", c.d_text(), 1, 1 << 14);
+      spec->text_rows = read.Size("text_rows", c.text_rows(), 1, 1 << 10);
       return;
-    case fb::Config::Model2Config:
+    }
+    case fb::Config::Model2Config: {
+      const fb::Model2Config& c = *network.config_as_Model2Config();
       spec->layout = Layout::kWindows;
-      spec->f0_length = network.config_as_Model2Config()->f0_length();
-      spec->d_text = network.config_as_Model2Config()->d_text();
-      spec->max_words = network.config_as_Model2Config()->max_words();
+      spec->f0_length = read.Size("f0_length", c.f0_length(), 1, 1 << 12);
+      spec->d_text = read.Size("d_text", c.d_text(), 1, 1 << 14);
+      spec->max_words = read.Size("max_words", c.max_words(), 1, 1 << 10);
       return;
-    case fb::Config::BertConfig:
+    }
+    case fb::Config::BertConfig: {
+      const fb::BertConfig& c = *network.config_as_BertConfig();
       spec->layout = Layout::kSentences;
-      spec->positions = network.config_as_BertConfig()->positions();
-      spec->classifies = network.config_as_BertConfig()->head() == fb::BertHead::Classifier;
+      spec->positions = read.Size("positions", c.positions(), 3, 1 << 14);
+      spec->classifies = c.head() == fb::BertHead::Classifier;
       return;
+    }
     default:
       return;
   }
+}
+
+// Each range by itself still leaves room for gigabytes.
+void CheckSegment(ConfigReader& read, const FeatureSpec& spec) {
+  constexpr std::int64_t kMaxValues = 1 << 25;
+  if (spec.layout != Layout::kFrames) return;
+  read.Size("values of a segment's text", spec.frames * spec.d_text, 0, kMaxValues);
+  read.Size("values of a segment's speech", spec.frames * spec.mel_bins, 0, kMaxValues);
 }
 
 void ReadFields(ConfigReader& read, const fb::Features& f, FeatureSpec* spec) {
@@ -119,7 +136,10 @@ void ReadFields(ConfigReader& read, const fb::Features& f, FeatureSpec* spec) {
 
 Result<FeatureSpec> ReadFeatureSpec(const fb::Network& network) {
   FeatureSpec spec;
-  ReadLayout(network, &spec);
+  ConfigReader config("network " + network.name()->str());
+  ReadLayout(config, network, &spec);
+  CheckSegment(config, spec);
+  if (!config.status().ok()) return config.status();
   ConfigReader read("network " + network.name()->str() + ": features");
   if (network.features() != nullptr) ReadFields(read, *network.features(), &spec);
   spec.joints = Sources(read, "joints", kLastJoint, network.joints());

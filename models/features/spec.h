@@ -66,7 +66,7 @@ struct FeatureSpec {
   std::vector<std::string> tags;  ///< empty: the classifier's order
 };
 
-/// Errors name the network and the field.
+/// Errors name the network and the field.  Nothing in the file need have been checked before.
 Result<FeatureSpec> ReadFeatureSpec(const fb::Network& network);
 
 }  // namespace gestus::features

@@ -118,6 +118,46 @@ TEST(FeatureSpecTest, WhatIsOutOfRangeIsNamed) {
   }
 }
 
+// Found by tests/fuzz/front_end_fuzz.cc: a front end allocates by these before the network checks
+// them.
+TEST(FeatureSpecTest, TheNetworksOwnNumbersAreInRange) {
+  struct Core {
+    std::uint32_t frames, d_text, mel_bins;
+    float rate;
+    std::uint32_t context;
+    const char* expect;
+  };
+  constexpr std::uint32_t kHuge = 0xffffffff;
+  const Core kCores[] = {
+      {0, 768, 128, 15, 1, "network net: frames: 0, expected 1 to 4096"},
+      {kHuge, 768, 128, 15, 1, "network net: frames: 4294967295"},
+      {16, kHuge, 128, 15, 1, "network net: d_text: 4294967295"},
+      {16, 768, 0, 15, 1, "network net: mel_bins: 0"},
+      {16, 768, 128, 0, 1, "network net: frame_rate: 0"},
+      {16, 768, 128, 15, kHuge, "network net: context_segments: 4294967295"},
+      {4096, 16384, 128, 15, 1, "values of a segment's text: 67108864, expected 0 to 33554432"},
+  };
+  for (const Core& core : kCores) {
+    test::FileSpec file = Zs2(nullptr);
+    file.networks[0].config = [&core](FlatBufferBuilder& b) {
+      const auto ast = fb::CreateAstConfig(b, 16, core.mel_bins);
+      fb::ZsMstm1ConfigBuilder c(b);
+      c.add_frames(core.frames);
+      c.add_d_text(core.d_text);
+      c.add_ast_content(ast);
+      c.add_frame_rate(core.rate);
+      c.add_granularity(fb::Granularity::Segment);
+      c.add_context_segments(core.context);
+      const auto made = c.Finish();
+      return fb::CreateZsMstm2Config(b, made, 4, 3).Union();
+    };
+    const Result<FeatureSpec> spec = Read(file);
+    ASSERT_FALSE(spec.ok()) << core.expect;
+    EXPECT_TRUE(spec.status().message().find(core.expect) != std::string::npos)
+        << spec.status().message();
+  }
+}
+
 TEST(FeatureSpecTest, ListsFitTheirWidths) {
   for (const bool landmarks : {true, false}) {
     const Result<FeatureSpec> spec = Read(Zs2([&](FlatBufferBuilder& b) {

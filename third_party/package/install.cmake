@@ -40,9 +40,17 @@ endfunction()
 foreach(part kernels engine models)
   gestus_install_library(${part})
 endforeach()
-set(parts audio cli features io motion outputs prosody text words)
+set(parts audio features io metrics motion outputs player prosody text words)
+get_property(targets DIRECTORY models PROPERTY BUILDSYSTEM_TARGETS)
+foreach(target IN LISTS targets)
+  get_target_property(type ${target} TYPE)
+  string(REPLACE gestus_ "" part ${target})
+  if(type STREQUAL STATIC_LIBRARY AND NOT part IN_LIST parts AND NOT part STREQUAL models)
+    message(FATAL_ERROR "${target} is not installed: name it in third_party/package/install.cmake")
+  endif()
+endforeach()
 file(GLOB headers RELATIVE ${CMAKE_SOURCE_DIR} engine/*.h models/*.h models/*/*.h)
-foreach(folder IN LISTS parts)
+foreach(folder IN LISTS parts ITEMS cli)
   list(FILTER headers EXCLUDE REGEX "^models/${folder}/")
 endforeach()
 gestus_install_headers(kernels/kernels.h ${headers})
@@ -65,7 +73,12 @@ gestus_install_part(motion "Key points and action units to poses" REQUIRES gestu
 gestus_install_part(features "Recordings and words to the inputs of a network"
                     REQUIRES gestus-text gestus-prosody gestus-words gestus-motion
                     HEADERS front_end input_stream spec stages word_encoder)
-gestus_install_part(outputs "What networks put out, as motion" REQUIRES gestus-motion HEADERS motion)
+gestus_install_part(outputs "What networks put out, as motion and in the files of other programs"
+                    REQUIRES gestus-motion HEADERS formats motion)
+gestus_install_part(metrics "The measures of the thesis' evaluations" REQUIRES gestus-outputs
+                    HEADERS activity behaviour error measure points similarity transfer)
+gestus_install_part(player "Motion to look at" REQUIRES gestus-outputs gestus-words
+                    HEADERS page sheet show video)
 
 set(package ${CMAKE_INSTALL_LIBDIR}/cmake/gestus)
 install(EXPORT gestus NAMESPACE gestus:: FILE gestusTargets.cmake DESTINATION ${package})
