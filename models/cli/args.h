@@ -20,8 +20,8 @@ struct Arguments {
   std::string output;               ///< never empty for kInfer, kStyle and kFeatures
   double pose_rate = 0;             ///< frames per second of OpenPose's files; 0: found out
   std::string style;
-  std::string html, svg, mp4;  ///< what to look at; empty: not wanted
-  std::string source, target;  ///< motion to show beside it
+  std::string html, svg, mp4, title;  ///< what to look at; empty: not wanted
+  std::string source, target;         ///< motion to show beside it
   std::string network;
   std::string isa;
   int threads = 1;

@@ -160,7 +160,9 @@ Status Views::Write(const Arguments& arguments, const Inputs& inputs, const Setu
   Result<Motion> motion = outputs::MotionOf(record, outputs);
   if (!motion.ok()) return motion.status();
   player::Show show;
-  show.title = OneLine(Name(inputs.audio.empty() ? arguments.inputs.front() : inputs.audio));
+  show.title = arguments.title;
+  if (show.title.empty())
+    show.title = OneLine(Name(inputs.audio.empty() ? arguments.inputs.front() : inputs.audio));
   show.network = setup.network->kind();
   show.weights = WeightsText(setup);
   show.trained = setup.Trained();
