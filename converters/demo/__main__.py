@@ -4,6 +4,7 @@ import argparse
 import hashlib
 import json
 import pathlib
+import shlex
 import shutil
 import string
 import subprocess
@@ -12,7 +13,7 @@ import sys
 import numpy as np
 
 from ..errors import ConvertError
-from . import recordings, sheet, style_clip, terminal
+from . import recordings, style_clip, terminal
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SPEECH, CLIP = "0870", "0890"
@@ -50,24 +51,16 @@ def demo(options, out):
     style_clip.write_openpose(pose, speaker / "poses")
 
     weights = random_weights(out)
-    motion, stages = out / "motion.npz", out / "features.npz"
+    motion = out / "motion.npz"
     report = infer_cli(options.infer_cli, weights, speech.path, "--words", words, "--style", speaker,
-                       "-o", motion, "--threads", options.threads)
-    infer_cli(options.infer_cli, "features", weights, speech.path, words, "-o", stages)
-    pose = np.load(motion)["pose"]
-
-    svg = sheet.Sheet(np.load(stages)["speech"], pose, speech.words, RATE).render(
-        SENTENCE,
-        f"ZS-MSTM 1.0 at full size, {len(pose)} frames at {RATE:g} a second. " + UNTRAINED,
-        "Speech: LibriVox, public domain; its log-mel spectrogram and words (times estimated). "
-        "Below, the pose every 0.4 s and the path of the wrists since the last one.")
-    (out / "motion.svg").write_text(svg, encoding="utf-8")
-    report_to_terminal(speech, pose, report, out)
+                       "-o", motion, "--html", out / "motion.html", "--svg", out / "motion.svg",
+                       "--title", SENTENCE, "--threads", options.threads)
+    report_to_terminal(speech, np.load(motion)["pose"], report, out)
 
 
 def infer_cli(*command):
     """Shows and runs a command; returns its report."""
-    say(" ".join(map(shown, command)))
+    say(" ".join(shlex.quote(shown(part)) for part in command))
     done = subprocess.run([*map(str, command), "--json"], check=True, stdout=subprocess.PIPE,
                           text=True)
     return json.loads(done.stdout)
@@ -131,6 +124,7 @@ def report_to_terminal(speech, pose, report, out):
     print(UNTRAINED)
     print("BERT is random too, word times are estimated, and the style clip's video is a procedural "
           "wave of the\narms: see converters/demo.\n")
+    print(f"watch    {shown(out / 'motion.html')} (open it in a browser)")
     print(f"speed    {1000 * report['segment_seconds_median']:.0f} ms a segment of 64 frames "
           f"(4.27 s of speech), {report['threads']} thread, {report['isa']}")
     print(f"picture  {shown(out / 'motion.svg')}\nmotion   {shown(out / 'motion.npz')}")

@@ -75,6 +75,8 @@ void AddViews(CLI::App* app, Arguments* a) {
   app->add_option("--svg", a->svg, "A contact sheet: figures over time")->type_name("FILE");
   app->add_option("--mp4", a->mp4, "A video, where the program ffmpeg is installed")
       ->type_name("FILE");
+  app->add_option("--title", a->title, "Title of these; default: the recording's name")
+      ->type_name("TEXT");
   app->add_option("--source", a->source,
                   "Motion of the source speaker to show beside it, arrays like the output's")
       ->type_name("FILE.npz");

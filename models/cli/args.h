@@ -45,11 +45,11 @@ struct Arguments {
   std::string output;  ///< never empty for kInfer, kStyle, kFeatures and what makes files of styles
   double pose_rate = 0;  ///< frames per second of OpenPose's files; 0: found out
   std::string style;
-  std::vector<std::string> exports;  ///< FORMAT=PATH each
-  std::vector<float> stance;         ///< X, Y and length of the shoulder; empty: the default
-  bool halve = false;                ///< OpenFace's values
-  std::string html, svg, mp4;        ///< what to look at; empty: not wanted
-  std::string source, target;        ///< motion to show beside it
+  std::vector<std::string> exports;   ///< FORMAT=PATH each
+  std::vector<float> stance;          ///< X, Y and length of the shoulder; empty: the default
+  bool halve = false;                 ///< OpenFace's values
+  std::string html, svg, mp4, title;  ///< what to look at; empty: not wanted
+  std::string source, target;         ///< motion to show beside it
   std::string network;
   std::string isa;
   int threads = 1;

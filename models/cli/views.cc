@@ -158,7 +158,9 @@ Status Views::Write(const Arguments& arguments, const Inputs& inputs, const Setu
   if (!Any()) return Status();
   const fb::Network& record = *setup.weights->FindNetwork(setup.name);
   player::Show show;
-  show.title = OneLine(Name(inputs.audio.empty() ? arguments.inputs.front() : inputs.audio));
+  show.title = arguments.title;
+  if (show.title.empty())
+    show.title = OneLine(Name(inputs.audio.empty() ? arguments.inputs.front() : inputs.audio));
   show.network = setup.network->kind();
   show.weights = WeightsText(setup);
   show.trained = setup.Trained();

@@ -3,9 +3,9 @@
 // left behind whatever happens.
 #include "models/player/video.h"
 
+#include <fcntl.h>
 #include <spawn.h>
 #include <sys/socket.h>
-#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -14,6 +14,8 @@
 #include <cstdio>
 #include <cstring>
 #include <memory>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "models/io/file.h"
@@ -69,25 +71,25 @@ class Program {
     Program program;
     program.input_ = Descriptor(ends[0]);
     const Descriptor theirs(ends[1]);
-    // Where files could stand on each other's numbers they are moved out of the way first.
-    const int high = 3 + static_cast<int>(files.size());
+    std::vector<int> wanted = {theirs.get(), ::fileno(said), ::fileno(said)};
+    for (std::FILE* file : files) wanted.push_back(::fileno(file));
+    // Copies with high numbers: none stands where another is to go.
+    std::vector<Descriptor> copies;
+    for (const int fd : wanted) {
+      copies.emplace_back(::fcntl(fd, F_DUPFD_CLOEXEC, 64));
+      if (copies.back().get() < 0) return SystemError("no more files can be opened", errno);
+    }
     posix_spawn_file_actions_t actions;
     ::posix_spawn_file_actions_init(&actions);
-    ::posix_spawn_file_actions_adddup2(&actions, theirs.get(), 0);
-    ::posix_spawn_file_actions_adddup2(&actions, ::fileno(said), 1);
-    ::posix_spawn_file_actions_adddup2(&actions, ::fileno(said), 2);
-    for (int i = 0; i < static_cast<int>(files.size()); ++i)
-      ::posix_spawn_file_actions_adddup2(&actions, ::fileno(files[static_cast<std::size_t>(i)]),
-                                         high + 16 + i);
-    for (int i = 0; i < static_cast<int>(files.size()); ++i)
-      ::posix_spawn_file_actions_adddup2(&actions, high + 16 + i, 3 + i);
+    for (std::size_t i = 0; i < copies.size(); ++i)
+      ::posix_spawn_file_actions_adddup2(&actions, copies[i].get(), static_cast<int>(i));
     std::vector<char*> argv;
     for (std::string& argument : arguments) argv.push_back(argument.data());
     argv.push_back(nullptr);
     const int error =
         ::posix_spawnp(&program.pid_, argv[0], &actions, nullptr, argv.data(), environ);
     ::posix_spawn_file_actions_destroy(&actions);
-    if (error == ENOENT) return NotFound();
+    if (error == ENOENT || error == ENOTDIR || error == EACCES) return NotFound();
     if (error != 0) return SystemError(arguments[0] + " cannot be run", error);
     return program;
   }

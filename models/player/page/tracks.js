@@ -112,18 +112,28 @@ function wordRow({ words }, height) {
       if (now >= 0) this.drawWord(context, view, palette, now, true);
     },
     drawWord(context, view, palette, i, now) {
-      const [text, start, end] = words[i], x = view.x(start), width = Math.max(view.x(end) - x - 2, 2);
+      const [text, start, end] = words[i];
+      let x = view.x(start), width = Math.max(view.x(end) - x - 2, 2);
       if (x + width < view.left || x > view.right) return;
+      if (now) {  // as wide as it needs to be
+        context.font = `12px ${FONT}`;
+        const more = Math.max(context.measureText(text).width + 8 - width, 0);
+        width += more;
+        x = Math.max(Math.min(x - more / 2, view.right - width - 1), view.left);
+      }
       context.fillStyle = now ? palette.accent : palette.word;
       context.beginPath();
       context.roundRect(x + 1, 3, width, height - 6, 4);
       context.fill();
-      if (width < 14) return;
+      const fits = [12, 10.5].some((size) => {
+        context.font = `${size}px ${FONT}`;
+        return context.measureText(text).width < width - 2;
+      });
+      if (!fits && width < 26) return;  // a letter or two would say nothing; the caption has it all
       context.save();
       context.clip();
       context.fillStyle = now ? palette.onAccent : palette.ink;
-      context.font = `12px ${FONT}`;
-      context.textAlign = context.measureText(text).width < width - 4 ? "center" : "start";
+      context.textAlign = fits ? "center" : "start";
       context.direction = "inherit";
       context.fillText(text, context.textAlign === "center" ? x + 1 + width / 2 : x + 4, height / 2 + 0.5);
       context.restore();
