@@ -40,7 +40,7 @@ endfunction()
 foreach(part kernels engine models)
   gestus_install_library(${part})
 endforeach()
-set(parts audio features io metrics motion outputs player prosody text words)
+set(parts audio features io metrics motion outputs player prosody styles text words)
 get_property(targets DIRECTORY models PROPERTY BUILDSYSTEM_TARGETS)
 foreach(target IN LISTS targets)
   get_target_property(type ${target} TYPE)
@@ -74,9 +74,11 @@ gestus_install_part(features "Recordings and words to the inputs of a network"
                     REQUIRES gestus-text gestus-prosody gestus-words gestus-motion
                     HEADERS front_end input_stream spec stages word_encoder)
 gestus_install_part(outputs "What networks put out, as motion and in the files of other programs"
-                    REQUIRES gestus-motion HEADERS formats motion)
+                    REQUIRES gestus-motion HEADERS finish formats motion)
 gestus_install_part(metrics "The measures of the thesis' evaluations" REQUIRES gestus-outputs
                     HEADERS activity behaviour error measure points similarity transfer)
+gestus_install_part(styles "Styles to mix, compare and show" REQUIRES gestus-io
+                    HEADERS blend distance gallery style)
 gestus_install_part(player "Motion to look at" REQUIRES gestus-outputs gestus-words
                     HEADERS page sheet show video)
 
