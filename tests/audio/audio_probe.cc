@@ -12,8 +12,6 @@
 // between tabs, or "error: <sentence>".  The last line is the largest resident size in KiB.  OUT
 // may be
 // "-".
-#include <sys/resource.h>
-
 #include <cstdio>
 #include <fstream>
 #include <iostream>
@@ -108,8 +106,12 @@ int main() {
     std::puts(answer.ok() ? ("ok" + *answer).c_str()
                           : ("error: " + gestus::OneLine(answer.status().message())).c_str());
   }
-  struct rusage usage = {};
-  getrusage(RUSAGE_SELF, &usage);
-  std::printf("%ld\n", usage.ru_maxrss);
+  // The peak of this process: ru_maxrss would begin with that of the process that forked.
+  std::ifstream status("/proc/self/status");
+  for (std::string word; status >> word;) {
+    if (word != "VmHWM:") continue;
+    status >> word;
+    std::puts(word.c_str());
+  }
   return 0;
 }
