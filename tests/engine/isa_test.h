@@ -36,8 +36,7 @@ class IsaTest : public testing::TestWithParam<Isa> {
 #define GESTUS_TEST_ON_EVERY_ISA(suite)                                                \
   INSTANTIATE_TEST_SUITE_P(                                                            \
       Isa, suite,                                                                      \
-      testing::Values(kernels::Isa::kScalar, kernels::Isa::kSse2, kernels::Isa::kNeon, \
-                      kernels::Isa::kAvx2, kernels::Isa::kAvx512),                     \
+      testing::ValuesIn(kernels::kAllIsas),                                            \
       [](const auto& test) { return kernels::IsaName(test.param); })
 
 }  // namespace gestus::test

@@ -139,9 +139,7 @@ TEST_P(GoldenTest, AgreesWithPyTorch) {
 INSTANTIATE_TEST_SUITE_P(
     All, GoldenTest,
     testing::Combine(testing::ValuesIn(Cases()),
-                     testing::Values(kernels::Isa::kScalar, kernels::Isa::kSse2,
-                                     kernels::Isa::kNeon, kernels::Isa::kAvx2,
-                                     kernels::Isa::kAvx512)),
+                     testing::ValuesIn(kernels::kAllIsas)),
     [](const auto& test) {
       std::string name = std::get<0>(test.param) + "_" + kernels::IsaName(std::get<1>(test.param));
       std::replace_if(
