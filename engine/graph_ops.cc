@@ -66,7 +66,8 @@ const char* Name(Op op) {
 
 std::string NameWithType(const Node& node) {
   const bool plain = node.weight.data == nullptr || node.weight.dtype == DType::kF32;
-  return std::string(Name(node.op)) + (plain ? "" : std::string(" ") + Name(node.weight.dtype));
+  return std::string(Name(node.op)) +
+         (plain ? "" : std::string("(") + Name(node.weight.dtype) + ")");
 }
 
 Value Graph::Linear(Value x, const LinearWeights& w, Activation act, float alpha) {

@@ -26,6 +26,16 @@ GESTUS_INLINE Ints<Arch> load_ints(const std::byte* p) {
   return Ints<Arch>::load_unaligned(reinterpret_cast<const std::int32_t*>(p));
 }
 
+/// Hides from the compiler where x comes from.
+template <class Arch>
+GESTUS_INLINE void keep_in_register(Batch<Arch>& x) {
+#if defined(__x86_64__)
+  asm("" : "+v"(x.data));
+#else
+  (void)x;
+#endif
+}
+
 /// What the scales and corrections behind a panel make of a sum; nothing for bf16.
 template <class Arch>
 struct FloatSums {
@@ -73,7 +83,10 @@ struct WidenedBf16 : FloatSums<Arch> {
       if constexpr (Sum::size == 16)
         return _mm512_castsi512_ps(_mm512_maskz_loadu_epi16(0xaaaaaaaau, p));
 #endif
-      return xsimd::bitwise_cast<Sum>(load_ints<Arch>(p) & Ints<Arch>(-65536));
+      // Not by a mask, as GCC would have it: AVX2's tile has no register left for one.
+      Sum upper = xsimd::bitwise_cast<Sum>(load_ints<Arch>(p) >> 16);
+      keep_in_register(upper);
+      return xsimd::bitwise_cast<Sum>(xsimd::bitwise_cast<Ints<Arch>>(upper) << 16);
     }
   }
   template <std::size_t kPhase>
@@ -81,7 +94,14 @@ struct WidenedBf16 : FloatSums<Arch> {
     return Sum(row[group * kGroup + kPhase]);
   }
   GESTUS_INLINE static Sum dot(const Sum& sum, const Sum& x, const Sum& w) {
+#if defined(__FMA__) && !defined(__AVX512F__)
+    // GCC would put sums where dying operands are, and pay with spills of the tile.
+    Sum result = sum;
+    asm("vfmadd231ps %2, %1, %0" : "+x"(result.data) : "x"(x.data), "x"(w.data));
+    return result;
+#else
     return multiply_add(x, w, sum);
+#endif
   }
   GESTUS_INLINE static void keep(const Sum& x) { keep_alive<Arch>(x); }
 };
