@@ -1,7 +1,7 @@
 """Makes smaller weights files: matrices in bf16 or int8, as far as the outputs bear it.
 
-Every network is run with its old and its new weights on the same inputs.  Where an output differs by
-more than the guard of the type, the modules that hurt most stay in the next wider type.
+Every network is run with its old and its new weights on the same inputs.  Where an output differs
+by more than the guard of the type, the modules that hurt most stay in the next wider type.
 """
 
 import os
@@ -37,8 +37,9 @@ def quantise(options):
         errors, wider = _search(network, modules, target, trials, options.to)
         kept |= wider
         for output, error in errors.items():
-            lines.append(f"{network['name']}: {output}: {_percent(error)}"
-                         + ("" if isinstance(error, str) else f" of at most {GUARDS[options.to]:.0%}"))
+            said = error if isinstance(error, str) else (
+                f"relative error {error:.3%} of at most {GUARDS[options.to]:.0%}")
+            lines.append(f"{network['name']}: {output}: {said}")
     for module, kind in kept.items():
         lines.append(f"{module}: stays {kind}, or an output would differ by more")
     old, new = os.path.getsize(options.weights), target.write(options.output, kept)
@@ -131,7 +132,8 @@ class _Trials:
             got = self._run(path, network, x)
             for name, array in want.items():
                 if array.dtype.kind == "i":
-                    share = float(np.mean(got[name] != array)) if got[name].shape == array.shape else 1
+                    same_shape = got[name].shape == array.shape
+                    share = float(np.mean(got[name] != array)) if same_shape else 1
                     changed[name] = max(changed.get(name, 0), share)
                 else:
                     errors[name] = max(errors.get(name, 0), relative_error(got[name], array))
@@ -167,30 +169,32 @@ def _search(network, modules, target, trials, kind):
     def worst(errors):
         return max((e for e in errors.values() if not isinstance(e, str)), default=0.0)
 
-    kept = {}
-    errors = trial(kept)
+    def fewest(kept, order, wider):
+        """How many of the first in `order` must be wider: errors fall with their number, roughly."""
+        low, high = -1, len(order)
+        while low + 1 < high:
+            count = (low + high) // 2
+            passed = worst(trial(kept | dict.fromkeys(order[:count], wider))) <= guard
+            low, high = (low, count) if passed else (count, high)
+        return high
+
+    errors = trial({})
     if worst(errors) <= guard:
-        return errors, kept
+        return errors, {}
     order = sorted(modules, key=lambda m: worst(trial({}, {m})), reverse=True)
-    wider = _WIDER[kind]
-    while True:
-        # The fewest of the worst modules that must be wider: errors fall with their number, roughly.
-        low, high, found = 0, len(order), None
-        while low + 1 < high or found is None:
-            count = high if found is None else (low + high) // 2
-            errors = trial(kept | dict.fromkeys(order[:count], wider))
-            if worst(errors) <= guard:
-                found, high = errors, count
-            elif found is None:
-                break
-            else:
-                low = count
-        if found is not None:
-            return found, kept | dict.fromkeys(order[:high], wider)
-        if wider == "float32":
-            raise ConvertError(f"network {network['name']}: outputs differ by {worst(errors):.2%} "
-                               "with all weights as they were: they are not reproducible")
-        kept, wider = dict.fromkeys(order, wider), _WIDER[wider]
+    kept, wider = {}, _WIDER[kind]
+    if wider != "float32":
+        all_wider = dict.fromkeys(order, wider)
+        if worst(trial(all_wider)) > guard:
+            # Some must be float32, whatever the rest is.
+            count = fewest(all_wider, order, "float32")
+            kept, order = dict.fromkeys(order[:count], "float32"), order[count:]
+    kept |= dict.fromkeys(order[:fewest(kept, order, wider)], wider)
+    errors = trial(kept)
+    if worst(errors) > guard:
+        raise ConvertError(f"network {network['name']}: outputs differ by {worst(errors):.2%} even "
+                           f"with {len(kept)} of {len(modules)} modules wider")
+    return errors, kept
 
 
 def _inputs(file, given):
@@ -217,7 +221,3 @@ def _inputs(file, given):
                           in zip(test["input_names"], test["inputs"])}]
         inputs[network["name"]] = own
     return inputs
-
-
-def _percent(error):
-    return error if isinstance(error, str) else f"relative error {error:.3%}"

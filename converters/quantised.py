@@ -6,8 +6,9 @@ from .errors import ConvertError
 
 
 class Quantised:
-    """`dtype` "BF16": `values` are the upper halves of float32, as uint16.  "I8": `values` are int8 of
-    -127 to 127 and `scale` (rows,) float32 is what each row of the first axis is multiplied with."""
+    """`dtype` "BF16": `values` are the upper halves of float32, as uint16.  "I8": `values` are int8
+    of -127 to 127 and `scale` (rows,) float32 is what each row of the first axis is multiplied
+    with."""
 
     def __init__(self, dtype, values, scale=None):
         self.dtype, self.values, self.scale = dtype, values, scale

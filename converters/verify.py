@@ -45,7 +45,7 @@ def verify(options):
 
 
 def _tolerance(file):
-    """By the narrowest type of a weight: rows are rounded or quantised as well, PyTorch's
+    """By the narrowest type of a weight: rows are rounded or quantised too, PyTorch's
     are not.  Half as much again as quantise allows, for other inputs."""
     types = {tensor.dtype for tensor in file.tensors.values() if isinstance(tensor, Quantised)}
     return 0.045 if "I8" in types else 0.015 if "BF16" in types else 1e-4
