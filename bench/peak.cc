@@ -42,6 +42,9 @@ Probe ProbeFor(Isa isa) {
 #endif
 #ifdef GESTUS_HAVE_AVX512
     case Isa::kAvx512:
+    case Isa::kAvx512Vnni:
+    case Isa::kAvx512Bf16:
+    case Isa::kAvx512Amx:
       return {FmaProbe_avx512, ReadProbe_avx512};
 #endif
 #ifdef GESTUS_HAVE_NEON

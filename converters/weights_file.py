@@ -12,6 +12,7 @@ import xxhash
 
 from . import schema
 from .errors import ConvertError
+from .quantised import Quantised
 
 MAGIC = b"GESTUSW\0"
 FORMAT_VERSION = 1
@@ -22,9 +23,13 @@ CHECKSUM_OFFSET = 56
 MAX_NAME = 255
 MAX_RANK = 4
 MAX_DIM = 1 << 24
+SCALE = ".scale"   # behind the name of a tensor of I8: that of its scales
 
 _DTYPES = {"F32": np.dtype("<f4"), "I32": np.dtype("<i4"), "U8": np.dtype("u1")}
 _DTYPE_NAMES = {dtype: name for name, dtype in _DTYPES.items()}
+# In memory these are a Quantised each.
+_QUANTISED = {"BF16": np.dtype("<u2"), "I8": np.dtype("i1")}
+MAX_I8_DEPTH = 1 << 16
 
 
 def align(size):
@@ -32,12 +37,19 @@ def align(size):
 
 
 def write(path, networks, tensors, provenance):
-    """Writes `tensors` (name -> array, in this order), the `networks` and the `provenance`
-    (dictionaries with the schema's field names) to `path`, all or nothing."""
-    records, data_size = [], 0
-    for name, array in tensors.items():
-        records.append(_record(name, array, data_size))
-        data_size = align(data_size + array.nbytes)
+    """Writes `tensors` (name -> array or Quantised, in this order), the `networks` and the
+    `provenance` (dictionaries with the schema's field names) to `path`, all or nothing."""
+    records, arrays, data_size = [], [], 0
+    for name, tensor in tensors.items():
+        parts = [(name, tensor)]
+        if isinstance(tensor, Quantised) and tensor.scale is not None:
+            if name + SCALE in tensors:
+                raise ConvertError(f"tensor {name + SCALE}: the name of the scales of {name}")
+            parts.append((name + SCALE, tensor.scale))
+        for key, part in parts:
+            records.append(_record(key, part, data_size))
+            arrays.append(part.values if isinstance(part, Quantised) else part)
+            data_size = align(data_size + arrays[-1].nbytes)
     data_size += ALIGN
     metadata = schema.to_flatbuffer(
         {"networks": networks, "tensors": records, "provenance": provenance})
@@ -49,7 +61,7 @@ def write(path, networks, tensors, provenance):
 
     def blocks():
         yield metadata + bytes(data_offset - HEADER.size - len(metadata))
-        for array in tensors.values():
+        for array in arrays:
             yield np.ascontiguousarray(array).reshape(-1).view(np.uint8).data
             yield bytes(align(array.nbytes) - array.nbytes)
         yield bytes(ALIGN)
@@ -63,6 +75,12 @@ def write(path, networks, tensors, provenance):
 def _record(name, array, offset):
     if not name or len(name) > MAX_NAME or not (name.isascii() and name.isprintable()):
         raise ConvertError(f"tensor {name!r}: expected 1 to {MAX_NAME} printable ASCII characters")
+    if isinstance(array, Quantised):
+        record = {"dtype": array.dtype, "scale": name + SCALE} if array.scale is not None else {
+            "dtype": array.dtype}
+        array.check(name, MAX_I8_DEPTH)
+        return {"name": name, **record, "shape": list(array.shape), "offset": offset,
+                "bytes": array.values.nbytes}
     if array.dtype not in _DTYPE_NAMES:
         raise ConvertError(f"tensor {name}: dtype {array.dtype}, expected float32, int32 or uint8")
     if array.ndim > MAX_RANK or not all(1 <= n <= MAX_DIM for n in array.shape):
@@ -94,7 +112,8 @@ def replace_file(path, blocks):
 
 
 class WeightsFile:
-    """A file that has passed the checks of `read`: header fields, metadata and tensors by name."""
+    """A file that has passed the checks of `read`: header fields, metadata and tensors by name:
+    arrays, or Quantised with the scales that belong to them."""
 
     def __init__(self, header, metadata, tensors):
         self.header = header
@@ -110,11 +129,13 @@ class WeightsFile:
         return self.metadata["provenance"]
 
     def network_tensors(self, network):
-        """Tensors of one network, without its prefix and without its self-test vectors."""
+        """Tensors of one network, without its prefix and without its self-test vectors; quantised
+        ones as the float32 numbers that they stand for."""
         prefix = network["prefix"]
         test = network.get("self_test")
         skipped = {*test["inputs"], test["output"]} if test else set()
-        return {name[len(prefix):]: array for name, array in self.tensors.items()
+        return {name[len(prefix):]: array.float32() if isinstance(array, Quantised) else array
+                for name, array in self.tensors.items()
                 if name.startswith(prefix) and name not in skipped}
 
 
@@ -140,7 +161,30 @@ def read(path):
         tensors[record["name"]], position = _tensor(path, record, region, position, tensors)
     if region[position:].any() or region.size != position + ALIGN:
         raise ConvertError(f"{path}: the data region does not end with {ALIGN} zero bytes")
-    return WeightsFile(header, metadata, tensors)
+    return WeightsFile(header, metadata, _with_scales(path, metadata["tensors"], tensors))
+
+
+def _with_scales(path, records, tensors):
+    """`tensors` with the scales inside the tensors that they belong to."""
+    taken = {}
+    for record in records:
+        name, scale = record["name"], record.get("scale", "")
+        where = f"{path}: tensor {name}: "
+        if bool(scale) != (record["dtype"] == "I8"):
+            raise ConvertError(where + ("has a scale, which only I8 has" if scale
+                                        else "I8 without a scale"))
+        if scale in taken:
+            raise ConvertError(where + f"scale {scale} belongs to {taken[scale]} too")
+        if scale:
+            if scale not in tensors:
+                raise ConvertError(where + f"scale {scale}: no such tensor")
+            if isinstance(tensors[scale], Quantised):
+                raise ConvertError(where + f"scale {scale}: expected float32")
+            taken[scale] = name
+            tensors[name].scale = tensors[scale]
+        if isinstance(tensors[name], Quantised):
+            tensors[name].check(f"{name}", MAX_I8_DEPTH, f"{path}: ")
+    return {name: tensor for name, tensor in tensors.items() if name not in taken}
 
 
 def _check_header(path, raw, size):
@@ -169,9 +213,10 @@ def _tensor(path, record, region, position, known):
     where = f"{path}: tensor {name}: "
     if name in known:
         raise ConvertError(where + "name is used twice")
-    if record["dtype"] not in _DTYPES:
-        raise ConvertError(where + f"dtype {record['dtype']}, expected F32, I32 or U8")
-    dtype = _DTYPES[record["dtype"]]
+    known_types = _DTYPES | _QUANTISED
+    if record["dtype"] not in known_types:
+        raise ConvertError(where + f"dtype {record['dtype']}, expected {', '.join(known_types)}")
+    dtype = known_types[record["dtype"]]
     size = dtype.itemsize
     for dim in shape:
         size *= dim
@@ -183,4 +228,7 @@ def _tensor(path, record, region, position, known):
         raise ConvertError(where + f"payload at {begin} overlaps another or ends outside the file")
     if region[end:align(end)].any():
         raise ConvertError(where + "padding is not zero")
-    return region[begin:end].view(dtype).reshape(shape), align(end)
+    array = region[begin:end].view(dtype).reshape(shape)
+    if record["dtype"] in _QUANTISED:
+        return Quantised(record["dtype"], array), align(end)
+    return array, align(end)

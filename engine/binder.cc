@@ -2,6 +2,14 @@
 #include "engine/binder.h"
 
 namespace gestus {
+namespace {
+
+bool Takes(Binder::Reader reader, DType dtype) {
+  if (dtype == DType::kF32) return true;
+  return reader == Binder::kProduct && (dtype == DType::kBF16 || dtype == DType::kI8);
+}
+
+}  // namespace
 
 void Binder::Bind(std::initializer_list<Entry> table) {
   for (const Entry& e : table) {
@@ -11,12 +19,14 @@ void Binder::Bind(std::initializer_list<Entry> table) {
     if (found == nullptr) {
       status_ = Status(Code::kBadWeights, file_.path() + ": tensor " + name +
                                               ": missing, expected " + e.shape.ToString());
-    } else if (!(found->view.shape == e.shape) || found->view.dtype != DType::kF32) {
+    } else if (!(found->view.shape == e.shape) || !Takes(e.reader, found->view.dtype)) {
+      const char* types = e.reader == kProduct ? " float32, bfloat16 or int8" : " float32";
       status_ =
           Status(Code::kBadWeights,
                  file_.path() + ": tensor " + name + ": " + found->view.shape.ToString() + " " +
-                     Name(found->view.dtype) + ", expected " + e.shape.ToString() + " float32");
+                     Name(found->view.dtype) + ", expected " + e.shape.ToString() + types);
     } else {
+      if (found->view.dtype == DType::kI8) used_.insert(found->scale);
       *e.to = found->view;
       used_.insert(name);
     }

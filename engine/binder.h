@@ -18,10 +18,13 @@ namespace gestus {
 
 class Binder {
  public:
+  /// What reads a tensor: values want float32, products and embeddings take bfloat16 and int8 too.
+  enum Reader : std::uint8_t { kValues, kProduct };
   struct Entry {
     std::string name;  ///< after the current prefix
     TensorView* to;
     Shape shape;
+    Reader reader = kValues;
   };
 
   Binder(const WeightsFile& file, std::string prefix) : file_(file), prefix_(std::move(prefix)) {}

@@ -114,6 +114,9 @@ Value Graph::Input(const std::string& name, Shape shape, DType dtype) {
 
 Value Graph::Constant(const TensorView& view) {
   if (!GoodShape("constant", view.shape)) return {};
+  if (!Expect(view.dtype == DType::kF32 || view.dtype == DType::kI32,
+              std::string("constant: ") + gestus::Name(view.dtype) + ", expected float32 or int32"))
+    return {};
   const Value v = NewValue(view.shape, view.dtype);
   values_.back().constant = view.data;
   return v;

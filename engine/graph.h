@@ -101,6 +101,8 @@ struct Node {
   std::int64_t before = 0;  ///< kPadRows: zero rows put before each sequence
   PatchOptions patches;
 };
+/// "linear", and "linear(int8)" where weights have a type of their own.
+std::string NameWithType(const Node& node);
 
 /// A value: its own storage, or a view of another value's.
 struct ValueInfo {

@@ -9,7 +9,11 @@ namespace gestus {
 namespace {
 
 bool BiasFits(const TensorView& bias, std::int64_t n) {
-  return bias.data == nullptr || bias.shape == Shape{n};
+  return bias.data == nullptr || (bias.shape == Shape{n} && bias.dtype == DType::kF32);
+}
+
+bool IsProductType(DType dtype) {
+  return dtype == DType::kF32 || dtype == DType::kBF16 || dtype == DType::kI8;
 }
 
 }  // namespace
@@ -58,6 +62,12 @@ const char* Name(Op op) {
       return "pick";
   }
   return "unknown";
+}
+
+std::string NameWithType(const Node& node) {
+  const bool plain = node.weight.data == nullptr || node.weight.dtype == DType::kF32;
+  return std::string(Name(node.op)) +
+         (plain ? "" : std::string("(") + Name(node.weight.dtype) + ")");
 }
 
 Value Graph::Linear(Value x, const LinearWeights& w, Activation act, float alpha) {
@@ -171,7 +181,8 @@ Value Graph::Patches(Value x, const PatchOptions& o) {
 
 Value Graph::LayerNorm(Value x, const NormWeights& w) {
   if (Bad(x)) return {};
-  if (!Expect(w.gamma.shape.NumElements() == shape(x).Cols() && w.gamma.shape == w.beta.shape,
+  if (!Expect(w.gamma.shape.NumElements() == shape(x).Cols() && w.gamma.shape == w.beta.shape &&
+                  w.gamma.dtype == DType::kF32 && w.beta.dtype == DType::kF32,
               "layer_norm: input " + shape(x).ToString() + ", weight " + w.gamma.shape.ToString()))
     return {};
   Node node = NewNode(Op::kLayerNorm, {x.id});
@@ -269,8 +280,9 @@ Value Graph::MeanRows(Value x) {
 
 Value Graph::Embedding(Value ids, const TensorView& table, float scale) {
   if (Bad(ids)) return {};
-  if (!Expect(info(ids).dtype == DType::kI32 && table.shape.rank() == 2,
-              "embedding: expected int32 ids and a table (V, D)"))
+  if (!Expect(
+          info(ids).dtype == DType::kI32 && table.shape.rank() == 2 && IsProductType(table.dtype),
+          "embedding: expected int32 ids and a table (V, D)"))
     return {};
   Node node = NewNode(Op::kGather, {ids.id});
   node.weight = table;

@@ -158,7 +158,7 @@ std::string Plan::ToString() const {
   double flops = 0;
   for (std::size_t i = 0; i < steps_.size(); ++i) {
     const Node& n = steps_[i].node;
-    std::string what = Name(n.op);
+    std::string what = NameWithType(n);
     if (n.op == Op::kLinear && n.bias.data != nullptr) what += "+bias";
     if (n.act != Activation::kNone && n.op == Op::kLinear) what += "+act";
     if (n.residual) what += "+residual";

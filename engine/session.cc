@@ -60,7 +60,7 @@ void Session::Impl::BindOps(const Plan& plan) {
     b.node = &step.node;
     for (int in : step.node.inputs) b.in.push_back(RefOf(plan, in));
     b.out = RefOf(plan, step.node.output);
-    b.packed = step.packed != nullptr ? step.packed->f32() : nullptr;
+    b.packed = step.packed != nullptr ? step.packed->data() : nullptr;
     b.shared_scratch = reinterpret_cast<float*>(arena.data() + step.scratch_offset);
     b.worker_scratch = scratch.f32();
     b.worker_scratch_stride = plan.worker_bytes() / sizeof(float);
@@ -130,7 +130,7 @@ Result<std::unique_ptr<Session>> Session::Create(std::shared_ptr<const Plan> pla
   impl.BindOps(p);
   if (options.profile) {
     for (const Plan::Step& step : p.steps())
-      impl.profile.push_back({step.node.scope + " " + gestus::Name(step.node.op), 0, 0, 0, 0});
+      impl.profile.push_back({step.node.scope + " " + NameWithType(step.node), 0, 0, 0, 0});
   }
   return session;
 }

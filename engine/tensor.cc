@@ -3,7 +3,10 @@
 
 namespace gestus {
 
-std::size_t SizeOf(DType dtype) { return dtype == DType::kU8 ? 1 : 4; }
+std::size_t SizeOf(DType dtype) {
+  if (dtype == DType::kBF16) return 2;
+  return dtype == DType::kU8 || dtype == DType::kI8 ? 1 : 4;
+}
 
 const char* Name(DType dtype) {
   switch (dtype) {
@@ -13,6 +16,10 @@ const char* Name(DType dtype) {
       return "int32";
     case DType::kU8:
       return "uint8";
+    case DType::kBF16:
+      return "bfloat16";
+    case DType::kI8:
+      return "int8";
   }
   return "unknown";
 }
@@ -29,6 +36,15 @@ bool Shape::operator==(const Shape& other) const {
     if ((*this)[i] != other[i]) return false;
   }
   return true;
+}
+
+TensorView TensorView::Rows(std::int64_t begin, std::int64_t count) const {
+  TensorView part = *this;
+  part.shape = {count, shape.Cols()};
+  part.data = static_cast<const std::byte*>(data) +
+              static_cast<std::size_t>(begin * shape.Cols()) * SizeOf(dtype);
+  if (scale != nullptr) part.scale = scale + begin;
+  return part;
 }
 
 std::string Shape::ToString() const {

@@ -10,7 +10,7 @@
 
 namespace gestus {
 
-enum class DType : std::uint8_t { kF32, kI32, kU8 };
+enum class DType : std::uint8_t { kF32, kI32, kU8, kBF16, kI8 };
 
 std::size_t SizeOf(DType dtype);
 const char* Name(DType dtype);
@@ -47,9 +47,12 @@ struct TensorView {
   DType dtype = DType::kF32;
   Shape shape;
   const void* data = nullptr;
+  const float* scale = nullptr;  ///< kI8: one for each of shape[0] rows
 
   const float* f32() const { return static_cast<const float*>(data); }
   const std::int32_t* i32() const { return static_cast<const std::int32_t*>(data); }
+  /// Rows [begin, begin + count) of a matrix (rows, cols).
+  TensorView Rows(std::int64_t begin, std::int64_t count) const;
 };
 
 }  // namespace gestus

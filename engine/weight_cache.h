@@ -15,10 +15,13 @@
 namespace gestus {
 
 enum class PackLayout : std::uint8_t {
-  kLinear,     ///< (N, K), for f32_gemm and f32_gemv
+  kLinear,     ///< (N, K), for GEMM and GEMV
   kConv1d,     ///< (C_out, C_in, k) of PyTorch, for the GEMM over windows of k rows
-  kRecurrent,  ///< (4H, H), for f32_lstm_step
+  kRecurrent,  ///< (4H, H), for an LSTM's steps
 };
+
+/// The kernels for products with weights of bfloat16 or int8; null for float32.
+const kernels::ProductKernels* ProductsOf(const kernels::KernelTable& kernels, DType dtype);
 
 class WeightCache {
  public:
@@ -29,7 +32,7 @@ class WeightCache {
   const kernels::KernelTable& kernels() const { return kernels_; }
   const std::shared_ptr<const WeightsFile>& file() const { return file_; }
 
-  /// Null when memory is short.
+  /// In the layout of its type.  Null when memory is short.
   std::shared_ptr<const AlignedBuffer> Packed(const TensorView& weight, PackLayout layout);
 
   std::size_t packed_bytes() const { return packed_bytes_; }

@@ -10,7 +10,9 @@
 
 #include <algorithm>
 #include <cstring>
+#include <set>
 
+#include "kernels/kernels.h"
 #include "weights_generated.h"
 #define XXH_INLINE_ALL
 #include <xxhash.h>
@@ -31,6 +33,7 @@ constexpr std::size_t kMaxNameLength = 255;
 constexpr std::int64_t kMaxDim = std::int64_t{1} << 24;
 constexpr int kMaxDepth = 8;
 constexpr int kMaxTables = 1 << 16;
+constexpr std::uint64_t kMaxI8Depth = kernels::kMaxI8Depth;
 
 static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "weights files are little endian");
 
@@ -113,21 +116,49 @@ bool Convert(fb::DType from, DType* to) {
     case fb::DType::U8:
       *to = DType::kU8;
       return true;
+    case fb::DType::BF16:
+      *to = DType::kBF16;
+      return true;
+    case fb::DType::I8:
+      *to = DType::kI8;
+      return true;
     default:
       return false;
   }
 }
 
-bool AllFinite(const float* x, std::size_t n) {
-  constexpr std::uint32_t kExponent = 0x7f800000u;
-  std::uint32_t worst = 0;
+/// Whether no exponent of n floats of the bits Bits is that of NaN and infinity.
+template <class Bits>
+bool AllFinite(const void* x, std::size_t n, Bits exponent_mask) {
+  const auto* p = static_cast<const std::uint8_t*>(x);
+  Bits worst = 0;
   for (std::size_t i = 0; i < n; ++i) {
-    std::uint32_t bits;
-    std::memcpy(&bits, x + i, sizeof bits);
-    const std::uint32_t exponent = bits & kExponent;
+    Bits bits;
+    std::memcpy(&bits, p + i * sizeof bits, sizeof bits);
+    const auto exponent = static_cast<Bits>(bits & exponent_mask);
     worst = worst > exponent ? worst : exponent;
   }
-  return worst != kExponent;
+  return worst != exponent_mask;
+}
+
+/// What the numbers of a tensor must be.
+Status CheckValues(const TensorView& view, std::uint64_t elements, const std::string& where) {
+  const bool finite =
+      view.dtype == DType::kF32    ? AllFinite<std::uint32_t>(view.data, elements, 0x7f800000u)
+      : view.dtype == DType::kBF16 ? AllFinite<std::uint16_t>(view.data, elements, 0x7f80u)
+                                   : true;
+  if (!finite) return Bad(where + "holds NaN or infinity, expected finite weights");
+  if (view.dtype != DType::kI8) return {};
+  if (view.shape.rank() < 2) return Bad(where + "I8 with fewer than two dimensions");
+  const std::uint64_t depth = elements / static_cast<std::uint64_t>(view.shape[0]);
+  if (depth > kMaxI8Depth)
+    return Bad(where + "rows of " + std::to_string(depth) + " I8 elements, expected at most " +
+               std::to_string(kMaxI8Depth) + ", whose sums fit 32 bits");
+  const auto* p = static_cast<const std::int8_t*>(view.data);
+  std::int8_t least = 0;
+  for (std::uint64_t i = 0; i < elements; ++i) least = p[i] < least ? p[i] : least;
+  if (least < -127) return Bad(where + "holds -128, expected -127 to 127");
+  return {};
 }
 
 /// Checks one tensor record and makes its view; `end` is where the previous payload ended.
@@ -141,7 +172,7 @@ Status CheckTensor(const fb::Tensor& t, std::size_t index, const std::uint8_t* d
   const std::string where = "tensor " + entry->name + ": ";
   if (!Convert(t.dtype(), &entry->view.dtype))
     return Bad(where + "dtype " + std::to_string(static_cast<int>(t.dtype())) +
-               ", expected one that this version reads (F32, I32, U8)");
+               ", expected one that this version reads (F32, I32, U8, BF16, I8)");
   std::uint64_t elements = 1;
   const std::size_t rank = t.shape() == nullptr ? 0 : t.shape()->size();
   if (rank > Shape::kMaxRank)
@@ -168,9 +199,15 @@ Status CheckTensor(const fb::Tensor& t, std::size_t index, const std::uint8_t* d
   *end = AlignUp(t.offset() + bytes);
   entry->bytes = bytes;
   entry->view.data = data + t.offset();
-  if (entry->view.dtype == DType::kF32 && !AllFinite(entry->view.f32(), elements))
-    return Bad(where + "holds NaN or infinity, expected finite weights");
-  return {};
+  const bool scaled = t.scale() != nullptr && t.scale()->size() > 0;
+  if (scaled != (entry->view.dtype == DType::kI8))
+    return Bad(where + (scaled ? "has a scale, which only I8 has" : "I8 without a scale"));
+  if (scaled) {
+    if (!PrintableName(t.scale()->string_view()))
+      return Bad(where + "name of its scale is longer than 255 bytes or not printable");
+    entry->scale = t.scale()->str();
+  }
+  return CheckValues(entry->view, elements, where);
 }
 
 Status CheckJoints(const flatbuffers::Vector<flatbuffers::Offset<fb::Joint>>* joints,
@@ -344,6 +381,27 @@ Status WeightsFile::Check() {
       std::adjacent_find(tensors_.begin(), tensors_.end(),
                          [](const Entry& a, const Entry& b) { return a.name == b.name; });
   if (twice != tensors_.end()) return Bad("tensor " + twice->name + ": name is used twice");
+  return FindScales();
+}
+
+Status WeightsFile::FindScales() {
+  std::set<std::string_view> taken;
+  for (Entry& entry : tensors_) {
+    if (entry.scale.empty()) continue;
+    const std::string where = "tensor " + entry.name + ": scale " + entry.scale + ": ";
+    const Entry* scale = Find(entry.scale);
+    const Shape wanted{entry.view.shape[0]};
+    if (scale == nullptr) return Bad(where + "no such tensor, expected " + wanted.ToString());
+    if (scale->view.dtype != DType::kF32 || !(scale->view.shape == wanted))
+      return Bad(where + scale->view.shape.ToString() + " " + gestus::Name(scale->view.dtype) +
+                 ", expected " + wanted.ToString() + " float32");
+    const float* values = scale->view.f32();
+    if (!std::all_of(values, values + wanted[0], [](float x) { return x > 0; }))
+      return Bad(where + "holds zero or less, expected scales above zero");
+    if (!taken.insert(scale->name).second)
+      return Bad(where + "belongs to another tensor too, expected one of its own");
+    entry.view.scale = values;
+  }
   return {};
 }
 

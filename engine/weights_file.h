@@ -35,6 +35,7 @@ class WeightsFile {
     std::string name;
     TensorView view;
     std::uint64_t bytes = 0;
+    std::string scale{};  ///< int8: the tensor of its scales
   };
 
   static Result<std::shared_ptr<const WeightsFile>> Open(const std::string& path,
@@ -66,6 +67,7 @@ class WeightsFile {
  private:
   WeightsFile() = default;
   Status Check();
+  Status FindScales();
 
   std::string path_;
   const std::uint8_t* base_ = nullptr;

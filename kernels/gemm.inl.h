@@ -137,7 +137,8 @@ struct GemmSlice {
 template <class Arch>
 GESTUS_INLINE void gemm_slice(const GemmArgs& args, const GemmSlice& slice) {
   using Tile = GemmTile<Arch>;
-  const float* b = args.packed + slice.column * args.k + slice.k_begin * Tile::kColumns;
+  const float* b = static_cast<const float*>(args.packed) + slice.column * args.k +
+                   slice.k_begin * Tile::kColumns;
   const bool first = slice.k_begin == 0;
   const bool last = slice.k_begin + slice.k == args.k;
   // Each tile asks for its share of the lines of the next slice, the tiles after that for the lines
@@ -169,6 +170,7 @@ GESTUS_INLINE void gemm_slice(const GemmArgs& args, const GemmSlice& slice) {
 template <class Arch>
 void f32_gemm(const GemmArgs& args) {
   constexpr std::size_t kN = kGemmBlockN<Arch>;
+  const float* packed = static_cast<const float*>(args.packed);
   for (std::size_t m = 0; m < args.m; m += kBlockM) {
     const std::size_t m_end = m + kBlockM < args.m ? m + kBlockM : args.m;
     std::size_t k = 0;
@@ -176,8 +178,8 @@ void f32_gemm(const GemmArgs& args) {
       const std::size_t depth = args.k - k < kBlockK ? args.k - k : kBlockK;
       for (std::size_t column = args.n_begin; column < args.n_end; column += kN) {
         const std::size_t left = args.n_end - column;
-        const float* next = args.packed + (column + kN) * args.k + k * kN;
-        if (left <= kN) next = args.packed + args.n_begin * args.k + (k + depth) * kN;
+        const float* next = packed + (column + kN) * args.k + k * kN;
+        if (left <= kN) next = packed + args.n_begin * args.k + (k + depth) * kN;
         gemm_slice<Arch>(args, {m, m_end, k, depth, column, left < kN ? left : kN, next});
       }
       k += depth;

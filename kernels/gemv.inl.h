@@ -62,7 +62,7 @@ template <class Arch>
 void f32_gemv(const GemmArgs& args) {
   constexpr std::size_t kN = kGemmBlockN<Arch>;
   for (std::size_t column = args.n_begin; column < args.n_end; column += kN) {
-    const float* b = args.packed + column * args.k;
+    const float* b = static_cast<const float*>(args.packed) + column * args.k;
     const std::size_t left = args.n_end - column;
     const std::size_t columns = left < kN ? left : kN;
     float* out = args.out + column;

@@ -12,6 +12,7 @@
 #include "kernels/lstm.inl.h"
 #include "kernels/rows.inl.h"
 #include "kernels/softmax.inl.h"
+#include "kernels/typed_table.inl.h"
 
 namespace gestus::kernels {
 namespace {
@@ -42,6 +43,8 @@ constexpr KernelTable MakeTable(Isa isa, const char* name) {
       f32_mean_rows<Arch>,
       f32_gather<Arch>,
       f32_patches<Arch>,
+      &kProducts<WidenedBf16<Arch>>,
+      &kProducts<PairsI8<Arch>>,
   };
 }
 

@@ -16,7 +16,20 @@ namespace gestus::kernels {
 
 /// Instruction sets that a table of kernels can be built for, from the least to the most capable
 /// of one architecture.
-enum class Isa : std::uint8_t { kScalar, kSse2, kNeon, kAvx2, kAvx512 };
+/// The last three are kAvx512 with other products for 8-bit and bfloat16 weights.
+enum class Isa : std::uint8_t {
+  kScalar,
+  kSse2,
+  kNeon,
+  kAvx2,
+  kAvx512,
+  kAvx512Vnni,  ///< dot products of 8-bit integers
+  kAvx512Bf16,  ///< and of bfloat16
+  kAvx512Amx,   ///< both by tiles (AMX), where there is more than one row
+};
+/// All of them, in that order.
+constexpr Isa kAllIsas[] = {Isa::kScalar, Isa::kSse2,       Isa::kNeon,       Isa::kAvx2,
+                            Isa::kAvx512, Isa::kAvx512Vnni, Isa::kAvx512Bf16, Isa::kAvx512Amx};
 
 /// Activation functions that a matrix product can end with.
 enum class Activation : std::uint8_t {
@@ -38,7 +51,7 @@ struct Epilogue {
   float alpha = 0.0f;  ///< negative slope of kLeakyRelu
 };
 
-/// out (M, N) = epilogue(a (M, K) * W^T), W (N, K) packed by `f32_gemm_pack`.
+/// out (M, N) = epilogue(a (M, K) * W^T), W (N, K) packed by the `gemm_pack` of its type.
 /// Only columns [n_begin, n_end) are computed; n_begin must be a multiple of `gemm_block_n`.
 /// Every output element is the same bits however M and N are divided between calls with m > 1.
 struct GemmArgs {
@@ -46,10 +59,11 @@ struct GemmArgs {
   std::ptrdiff_t out_stride = 0;
   const float* a = nullptr;
   std::ptrdiff_t a_stride = 0;
-  const float* packed = nullptr;
+  const void* packed = nullptr;
   std::size_t m = 0, n = 0, k = 0;
   std::size_t n_begin = 0, n_end = 0;
   Epilogue epilogue;
+  void* scratch = nullptr;  ///< `scratch` bytes on a 64-byte boundary; float32 weights need none
 };
 
 /// One head of scaled dot-product attention over `rows` query rows, computed tile by tile with a
@@ -81,9 +95,10 @@ struct LstmStepArgs {
   float* h_out = nullptr;         ///< (H); must not overlap h_in
   float* c = nullptr;             ///< (H), updated in place
   const float* x_proj = nullptr;  ///< (4H): W_ih x + both biases of this step
-  const float* packed = nullptr;  ///< W_hh, packed by `f32_lstm_pack`
+  const void* packed = nullptr;   ///< W_hh, packed by the `lstm_pack` of its type
   const float* h_in = nullptr;    ///< (H)
   std::size_t hidden = 0, unit_begin = 0, unit_end = 0;
+  void* scratch = nullptr;  ///< `scratch` bytes for one row of H; float32 weights need none
 };
 
 /// Rows of an image of which `patches` are cut: out row p = flattened (kh, kw) patch.  Patches are
@@ -98,6 +113,42 @@ struct PatchArgs {
   std::size_t step_h = 0, step_w = 0;  ///< distance between patches
   std::size_t ph = 0, pw = 0;          ///< number of patches along each axis
 };
+
+/// Products with weights of fewer than 32 bits: bfloat16, or 8-bit integers of which each output
+/// row has a scale.  Rows of a and hidden states are float32; how they meet the weights is the
+/// type's:
+///
+///   bf16  where the machine multiplies bfloat16, rows are rounded to it (nearest, even) and sums
+///         are float32; elsewhere weights are widened and all is as with float32 weights.
+///   i8    q = round(x * 127 / max|row|), the sum of q * w in int32, then (sum * max|row| / 127) *
+///         scale.  Sums and scales are the same bits on every instruction set.
+struct ProductKernels {
+  const char* how;  ///< "vpdpbusd", "widened": for people
+
+  /// Bytes that a packed (n, k) matrix takes.
+  std::size_t (*gemm_packed_size)(std::size_t n, std::size_t k);
+  /// Packs w (n, k) of `w_stride` elements a row.  `scale` (n) is read for i8 alone.  `packed` must
+  /// be 64-byte aligned.
+  void (*gemm_pack)(void* packed, const void* w, const float* scale, std::ptrdiff_t w_stride,
+                    std::size_t n, std::size_t k);
+  /// Bytes of scratch for products of m rows of k.
+  std::size_t (*scratch)(std::size_t m, std::size_t k);
+  void (*gemm)(const GemmArgs& args);
+  /// The same for m == 1.
+  void (*gemv)(const GemmArgs& args);
+
+  std::size_t (*lstm_packed_size)(std::size_t hidden);
+  void (*lstm_pack)(void* packed, const void* w_hh, const float* scale, std::size_t hidden);
+  void (*lstm_step)(const LstmStepArgs& args);
+
+  /// y row i = factor * table row ids[i]; an id outside [0, vocabulary) gives zeros.
+  void (*gather)(float* y, std::ptrdiff_t y_stride, const void* table, const float* scale,
+                 const std::int32_t* ids, std::size_t n, std::size_t cols, std::size_t vocabulary,
+                 float factor);
+};
+
+/// Elements of one row of i8 weights that cannot overflow a sum: 255 * 127 * 2^16 < 2^31.
+constexpr std::size_t kMaxI8Depth = std::size_t{1} << 16;
 
 /// One implementation of every kernel.  A table is complete by construction: MakeTable() in
 /// kernel_table.inl.h fills all members, so a kernel missing for one ISA does not compile.
@@ -154,6 +205,9 @@ struct KernelTable {
                      std::ptrdiff_t table_stride, const std::int32_t* ids, std::size_t n,
                      std::size_t cols, std::size_t vocabulary, float scale);
   void (*f32_patches)(const PatchArgs& args);
+
+  const ProductKernels* bf16;
+  const ProductKernels* i8;
 };
 
 /// The table for one ISA, or null when this binary or this machine (CPU and operating system, asked
@@ -161,7 +215,8 @@ struct KernelTable {
 const KernelTable* TableFor(Isa isa);
 
 /// The best table this machine runs, lowered by the environment variable GESTUS_ISA
-/// (scalar, sse2, neon, avx2, avx512) when that is set.  A value that is unknown or asks for more
+/// (scalar, sse2, neon, avx2, avx512, avx512_vnni, avx512_bf16,
+/// avx512_amx) when that is set.  A value that is unknown or asks for more
 /// than the machine has is ignored here; the command line reports it.
 const KernelTable& BestTable();
 

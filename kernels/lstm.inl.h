@@ -82,32 +82,39 @@ GESTUS_INLINE Batch<Arch> lstm_cell(Batch<Arch>& c, const Batch<Arch> (&gates)[k
   return vsigmoid(gates[3]) * vtanh(c);
 }
 
+/// c and h of the units from `unit` on, of which the sums of `gates` still lack x_proj.
+template <class Arch>
+GESTUS_INLINE void lstm_finish(const LstmStepArgs& args, std::size_t unit,
+                               Batch<Arch> (&gates)[kGates]) {
+  constexpr std::size_t kW = kLstmBlock<Arch>;
+  const std::size_t units = args.unit_end - unit;
+  const float* x = args.x_proj + unit;
+  if (units >= kW) {
+#pragma GCC unroll 4
+    for (std::size_t g = 0; g < kGates; ++g) {
+      gates[g] += Batch<Arch>::load_unaligned(x + g * args.hidden);
+    }
+    Batch<Arch> c = Batch<Arch>::load_unaligned(args.c + unit);
+    lstm_cell<Arch>(c, gates).store_unaligned(args.h_out + unit);
+    c.store_unaligned(args.c + unit);
+  } else {
+#pragma GCC unroll 4
+    for (std::size_t g = 0; g < kGates; ++g) {
+      gates[g] += load_first<Arch>(x + g * args.hidden, units);
+    }
+    Batch<Arch> c = load_first<Arch>(args.c + unit, units);
+    store_first<Arch>(args.h_out + unit, units, lstm_cell<Arch>(c, gates));
+    store_first<Arch>(args.c + unit, units, c);
+  }
+}
+
 template <class Arch>
 void f32_lstm_step(const LstmStepArgs& args) {
-  constexpr std::size_t kW = kLstmBlock<Arch>;
-  for (std::size_t unit = args.unit_begin; unit < args.unit_end; unit += kW) {
-    const float* block = args.packed + unit * kGates * args.hidden;
-    const std::size_t units = args.unit_end - unit;
+  const float* packed = static_cast<const float*>(args.packed);
+  for (std::size_t unit = args.unit_begin; unit < args.unit_end; unit += kLstmBlock<Arch>) {
     Batch<Arch> gates[kGates];
-    lstm_gates<Arch>(gates, block, args.h_in, args.hidden);
-    const float* x = args.x_proj + unit;
-    if (units >= kW) {
-#pragma GCC unroll 4
-      for (std::size_t g = 0; g < kGates; ++g) {
-        gates[g] += Batch<Arch>::load_unaligned(x + g * args.hidden);
-      }
-      Batch<Arch> c = Batch<Arch>::load_unaligned(args.c + unit);
-      lstm_cell<Arch>(c, gates).store_unaligned(args.h_out + unit);
-      c.store_unaligned(args.c + unit);
-    } else {
-#pragma GCC unroll 4
-      for (std::size_t g = 0; g < kGates; ++g) {
-        gates[g] += load_first<Arch>(x + g * args.hidden, units);
-      }
-      Batch<Arch> c = load_first<Arch>(args.c + unit, units);
-      store_first<Arch>(args.h_out + unit, units, lstm_cell<Arch>(c, gates));
-      store_first<Arch>(args.c + unit, units, c);
-    }
+    lstm_gates<Arch>(gates, packed + unit * kGates * args.hidden, args.h_in, args.hidden);
+    lstm_finish<Arch>(args, unit, gates);
   }
 }
 

@@ -18,7 +18,14 @@ bool NeedsPacking(const Node& node) { return node.op == Op::kLinear || node.op =
 
 std::size_t WorkerScratch(const Node& node, const std::vector<ValueInfo>& values,
                           const kernels::KernelTable& kernels) {
-  return node.op == Op::kAttention ? AttentionScratch(node, values, kernels) : 0;
+  if (node.op == Op::kAttention) return AttentionScratch(node, values, kernels);
+  const kernels::ProductKernels* products = ProductsOf(kernels, node.weight.dtype);
+  if (products == nullptr || !NeedsPacking(node)) return 0;
+  const auto rows =
+      static_cast<std::size_t>(node.op == Op::kLstm ? 1 : ShapeOf(node.output, values).Rows());
+  const auto n = static_cast<std::size_t>(node.weight.shape[0]);
+  const auto k = static_cast<std::size_t>(node.weight.shape.NumElements()) / n;
+  return (products->scratch(rows, k) + sizeof(float) - 1) / sizeof(float);
 }
 
 std::size_t SharedScratch(const Node& node, const std::vector<ValueInfo>& values) {
@@ -38,7 +45,7 @@ OpCost CostOf(const Node& node, const std::vector<ValueInfo>& values) {
                              ? static_cast<double>(node.weight.shape.NumElements())
                              : 0;
   OpCost cost;
-  cost.bytes = 4 * (out + weights);
+  cost.bytes = 4 * out + static_cast<double>(SizeOf(node.weight.dtype)) * weights;
   for (int in : node.inputs) cost.bytes += 4 * Elements(in, values);
   switch (node.op) {
     case Op::kLinear: {

@@ -7,7 +7,13 @@ namespace {
 
 class LinearOp final : public BoundOp {
  public:
-  explicit LinearOp(const Binding& b) : kernels_(*b.kernels) {
+  explicit LinearOp(const Binding& b)
+      : block_(b.kernels->gemm_block_n),
+        scratch_(b.worker_scratch),
+        scratch_stride_(b.worker_scratch_stride) {
+    const kernels::ProductKernels* products = ProductsOf(*b.kernels, b.node->weight.dtype);
+    gemm_ = products != nullptr ? products->gemm : b.kernels->f32_gemm;
+    gemv_ = products != nullptr ? products->gemv : b.kernels->f32_gemv;
     const Ref& x = b.in[0];
     const Ref* residual = b.node->residual ? &b.in[1] : nullptr;
     const bool repeat = residual != nullptr && residual->rows * residual->batch == 1;
@@ -38,6 +44,7 @@ class LinearOp final : public BoundOp {
     for (std::size_t i = 0; i < batch_; ++i) {
       const auto b = static_cast<std::ptrdiff_t>(i);
       kernels::GemmArgs args = args_;
+      args.scratch = scratch_ + static_cast<std::size_t>(worker.index) * scratch_stride_;
       args.a += b * a_batch_stride_;
       args.out += b * out_batch_stride_;
       if (args.epilogue.residual != nullptr) args.epilogue.residual += b * residual_batch_stride_;
@@ -50,13 +57,13 @@ class LinearOp final : public BoundOp {
   // narrow ones by rows.
   void RunOne(kernels::GemmArgs args, const Worker& worker) const {
     const auto count = static_cast<std::size_t>(worker.count);
-    const std::size_t panels = (args.n + kernels_.gemm_block_n - 1) / kernels_.gemm_block_n;
+    const std::size_t panels = (args.n + block_ - 1) / block_;
     if (panels >= 2 * count || args.m < 8 * count) {
-      const Worker::Range cols = worker.Part(args.n, kernels_.gemm_block_n);
+      const Worker::Range cols = worker.Part(args.n, block_);
       if (cols.empty()) return;
       args.n_begin = cols.begin;
       args.n_end = cols.end;
-      (args.m == 1 ? kernels_.f32_gemv : kernels_.f32_gemm)(args);
+      (args.m == 1 ? gemv_ : gemm_)(args);
       return;
     }
     const Worker::Range rows = worker.Part(args.m);
@@ -69,10 +76,14 @@ class LinearOp final : public BoundOp {
       args.epilogue.residual += first * args.epilogue.residual_stride;
     args.n_begin = 0;
     args.n_end = args.n;
-    kernels_.f32_gemm(args);
+    gemm_(args);
   }
 
-  const kernels::KernelTable& kernels_;
+  void (*gemm_)(const kernels::GemmArgs& args);
+  void (*gemv_)(const kernels::GemmArgs& args);
+  std::size_t block_;
+  float* scratch_;
+  std::size_t scratch_stride_;
   std::size_t batch_;
   kernels::GemmArgs args_;
   std::ptrdiff_t a_batch_stride_ = 0, out_batch_stride_ = 0, residual_batch_stride_ = 0;

@@ -13,19 +13,24 @@ constexpr std::size_t kMinUnitsToDivide = 256;
 class LstmOp final : public BoundOp {
  public:
   explicit LstmOp(const Binding& b)
-      : kernels_(*b.kernels),
+      : block_(b.kernels->lstm_block),
+        scratch_(b.worker_scratch),
+        scratch_stride_(b.worker_scratch_stride),
         proj_(b.in[0]),
         out_(b.out),
         packed_(b.packed),
         reverse_(b.node->reverse),
         cell_(b.shared_scratch),
-        zeros_(b.shared_scratch + b.out.cols) {}
+        zeros_(b.shared_scratch + b.out.cols) {
+    const kernels::ProductKernels* products = ProductsOf(*b.kernels, b.node->weight.dtype);
+    step_ = products != nullptr ? products->lstm_step : b.kernels->f32_lstm_step;
+  }
 
   void Run(const Worker& worker) const noexcept override {
     if (out_.cols < kMinUnitsToDivide) {
       if (worker.index == 0) RunUnits({0, out_.cols}, Worker{});
     } else {
-      RunUnits(worker.Part(out_.cols, kernels_.lstm_block), worker);
+      RunUnits(worker.Part(out_.cols, block_), worker);
     }
   }
 
@@ -33,6 +38,7 @@ class LstmOp final : public BoundOp {
   void RunUnits(Worker::Range units, const Worker& worker) const {
     kernels::LstmStepArgs args;
     args.packed = packed_;
+    args.scratch = scratch_ + static_cast<std::size_t>(worker.index) * scratch_stride_;
     args.c = cell_;
     args.hidden = out_.cols;
     args.unit_begin = units.begin;
@@ -47,7 +53,7 @@ class LstmOp final : public BoundOp {
         args.h_in = h;
         args.h_out = out_.at(b, t);
         args.x_proj = proj_.at(b, t);
-        if (!units.empty()) kernels_.f32_lstm_step(args);
+        if (!units.empty()) step_(args);
         worker.Meet();
         h = args.h_out;
       }
@@ -58,9 +64,12 @@ class LstmOp final : public BoundOp {
     if (!units.empty()) std::memset(x + units.begin, 0, (units.end - units.begin) * sizeof(float));
   }
 
-  const kernels::KernelTable& kernels_;
+  void (*step_)(const kernels::LstmStepArgs& args);
+  std::size_t block_;
+  float* scratch_;
+  std::size_t scratch_stride_;
   Ref proj_, out_;
-  const float* packed_;
+  const void* packed_;
   bool reverse_;
   float *cell_, *zeros_;
 };

@@ -77,6 +77,9 @@ class MoveOp final : public BoundOp {
 
   void Gather() const {
     const auto vocabulary = static_cast<std::size_t>(node_.weight.shape[0]);
+    if (const kernels::ProductKernels* typed = ProductsOf(kernels_, node_.weight.dtype))
+      return typed->gather(out_.f32, out_.row_stride, node_.weight.data, node_.weight.scale,
+                           in_[0].i32(), out_.rows, out_.cols, vocabulary, node_.scale);
     kernels_.f32_gather(out_.f32, out_.row_stride, node_.weight.f32(),
                         static_cast<std::ptrdiff_t>(out_.cols), in_[0].i32(), out_.rows, out_.cols,
                         vocabulary, node_.scale);

@@ -42,7 +42,7 @@ struct Binding {
   const Node* node;
   std::vector<Ref> in;
   Ref out;
-  const float* packed = nullptr;
+  const void* packed = nullptr;
   float* shared_scratch = nullptr;
   float* worker_scratch = nullptr;        ///< of worker 0
   std::size_t worker_scratch_stride = 0;  ///< floats between workers

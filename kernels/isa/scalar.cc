@@ -27,6 +27,8 @@ constinit const KernelTable kScalarTable = {
     reference::mean_rows,
     reference::gather,
     reference::patches,
+    &reference::kBf16,
+    &reference::kI8,
 };
 
 }  // namespace gestus::kernels

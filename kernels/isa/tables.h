@@ -13,6 +13,12 @@ extern const KernelTable kAvx2Table;
 extern const KernelTable kAvx512Table;
 extern const KernelTable kNeonTable;
 
+// What the instruction sets above AVX-512 have of their own.
+extern const ProductKernels kVnniI8Products;
+extern const ProductKernels kNativeBf16Products;
+extern const ProductKernels kAmxI8Products;
+extern const ProductKernels kAmxBf16Products;
+
 }  // namespace gestus::kernels
 
 #endif  // GESTUS_KERNELS_ISA_TABLES_H_

@@ -26,9 +26,10 @@ void gemm_pack(float* packed, const float* w, std::ptrdiff_t w_stride, std::size
 
 void gemm(const GemmArgs& g) {
   const Epilogue& e = g.epilogue;
+  const auto* packed = static_cast<const float*>(g.packed);
   for (std::size_t i = 0; i < g.m; ++i) {
     for (std::size_t j = g.n_begin; j < g.n_end; ++j) {
-      double value = dot(&at(g.a, g.a_stride, i, 0), g.packed + j * g.k, g.k);
+      double value = dot(&at(g.a, g.a_stride, i, 0), packed + j * g.k, g.k);
       if (e.bias != nullptr) value += e.bias[j];
       value = activation(e.act, value, e.alpha);
       if (e.residual != nullptr) value += at(e.residual, e.residual_stride, i, j);
@@ -76,19 +77,24 @@ void lstm_pack(float* packed, const float* w_hh, std::size_t hidden) {
   gemm_pack(packed, w_hh, static_cast<std::ptrdiff_t>(hidden), 4 * hidden, hidden);
 }
 
+void lstm_cell(const LstmStepArgs& s, std::size_t u, const double (&gate)[4]) {
+  const double input = activation(Activation::kSigmoid, gate[0], 0.0);
+  const double forget = activation(Activation::kSigmoid, gate[1], 0.0);
+  const double output = activation(Activation::kSigmoid, gate[3], 0.0);
+  const double cell = forget * s.c[u] + input * std::tanh(gate[2]);
+  s.c[u] = static_cast<float>(cell);
+  s.h_out[u] = static_cast<float>(output * std::tanh(cell));
+}
+
 void lstm_step(const LstmStepArgs& s) {
+  const auto* packed = static_cast<const float*>(s.packed);
   for (std::size_t u = s.unit_begin; u < s.unit_end; ++u) {
     double gate[4];
     for (std::size_t g = 0; g < 4; ++g) {
       const std::size_t row = g * s.hidden + u;
-      gate[g] = s.x_proj[row] + dot(s.packed + row * s.hidden, s.h_in, s.hidden);
+      gate[g] = s.x_proj[row] + dot(packed + row * s.hidden, s.h_in, s.hidden);
     }
-    const double input = activation(Activation::kSigmoid, gate[0], 0.0);
-    const double forget = activation(Activation::kSigmoid, gate[1], 0.0);
-    const double output = activation(Activation::kSigmoid, gate[3], 0.0);
-    const double cell = forget * s.c[u] + input * std::tanh(gate[2]);
-    s.c[u] = static_cast<float>(cell);
-    s.h_out[u] = static_cast<float>(output * std::tanh(cell));
+    lstm_cell(s, u, gate);
   }
 }
 

@@ -21,12 +21,17 @@ void attention(const AttentionArgs& args);
 std::size_t lstm_packed_size(std::size_t hidden);
 void lstm_pack(float* packed, const float* w_hh, std::size_t hidden);
 void lstm_step(const LstmStepArgs& args);
+/// c and h of unit u from its gates, x_proj included.
+void lstm_cell(const LstmStepArgs& args, std::size_t u, const double (&gate)[4]);
 
 /// One-dimensional convolution of x (length, in) with w (out, kernel, in), zero padding `pad` on
 /// both sides: y ((length + 2 pad - kernel) / step + 1, out).  The engine has no such kernel: it
 /// multiplies overlapping rows.
 void conv1d(float* y, const float* x, const float* w, const float* bias, std::size_t length,
             std::size_t in, std::size_t out, std::size_t kernel, std::size_t step, std::size_t pad);
+
+// typed.cc
+extern const ProductKernels kBf16, kI8;
 
 // layers.cc
 void layer_norm(float* y, std::ptrdiff_t y_stride, const float* x, std::ptrdiff_t x_stride,

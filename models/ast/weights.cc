@@ -33,7 +33,7 @@ void BindAst(Binder& binder, const AstConfig& c, AstWeights* w) {
       {"v.cls_token", &w->cls, {1, 1, d}},
       {"v.dist_token", &w->dist, {1, 1, d}},
       {"v.pos_embed", &w->positions, {1, 2 + c.Patches(), d}},
-      {"v.patch_embed.proj.weight", &w->patch.weight, {d, 1, p, p}},
+      {"v.patch_embed.proj.weight", &w->patch.weight, {d, 1, p, p}, Binder::kProduct},
       {"v.patch_embed.proj.bias", &w->patch.bias, {d}},
   });
   w->cls.shape = w->dist.shape = {1, d};

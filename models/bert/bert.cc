@@ -48,7 +48,7 @@ Value BertClassifier(Graph& g, const BertWeights& w, Value hidden) {
 
 void BindBert(Binder& binder, const BertConfig& c, BertWeights* w) {
   const std::int64_t d = c.d_model;
-  binder.Bind({{"embeddings.word_embeddings.weight", &w->words, {c.tokens, d}},
+  binder.Bind({{"embeddings.word_embeddings.weight", &w->words, {c.tokens, d}, Binder::kProduct},
                {"embeddings.position_embeddings.weight", &w->positions, {c.positions, d}}});
   if (c.types > 0)
     binder.Bind({{"embeddings.token_type_embeddings.weight", &w->types, {c.types, d}}});

@@ -24,7 +24,7 @@ Value AfterSelfAttention(Graph& g, const DecoderLayerWeights& w, int heads, Valu
 
 void BindMultihead(Binder& binder, const std::string& name, std::int64_t e, MultiheadWeights* w) {
   binder.Bind({
-      {name + ".in_proj_weight", &w->in_proj.weight, {3 * e, e}},
+      {name + ".in_proj_weight", &w->in_proj.weight, {3 * e, e}, Binder::kProduct},
       {name + ".in_proj_bias", &w->in_proj.bias, {3 * e}},
   });
   BindLinear(binder, name + ".out_proj", e, e, &w->out_proj);

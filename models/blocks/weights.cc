@@ -5,7 +5,8 @@ namespace gestus::models {
 
 void BindLinear(Binder& binder, const std::string& name, std::int64_t out, std::int64_t in,
                 LinearWeights* w) {
-  binder.Bind({{name + ".weight", &w->weight, {out, in}}, {name + ".bias", &w->bias, {out}}});
+  binder.Bind({{name + ".weight", &w->weight, {out, in}, Binder::kProduct},
+               {name + ".bias", &w->bias, {out}}});
 }
 
 void BindNorm(Binder& binder, const std::string& name, std::int64_t d, float eps, NormWeights* w) {
@@ -19,8 +20,8 @@ namespace {
 void BindLstmLayer(Binder& binder, const std::string& name, const std::string& suffix,
                    std::int64_t in, std::int64_t hidden, LstmWeights* w) {
   binder.Bind({
-      {name + ".weight_ih" + suffix, &w->w_ih, {4 * hidden, in}},
-      {name + ".weight_hh" + suffix, &w->w_hh, {4 * hidden, hidden}},
+      {name + ".weight_ih" + suffix, &w->w_ih, {4 * hidden, in}, Binder::kProduct},
+      {name + ".weight_hh" + suffix, &w->w_hh, {4 * hidden, hidden}, Binder::kProduct},
       {name + ".bias_ih" + suffix, &w->b_ih, {4 * hidden}},
       {name + ".bias_hh" + suffix, &w->b_hh, {4 * hidden}},
   });
@@ -48,9 +49,7 @@ void BindLstmStack(Binder& binder, const std::string& name, std::int64_t layers,
 
 LinearWeights RowsOf(const LinearWeights& w, std::int64_t begin, std::int64_t count) {
   LinearWeights part = w;
-  const std::int64_t in = w.weight.shape.rank() == 2 ? w.weight.shape[1] : 0;
-  part.weight.shape = {count, in};
-  part.weight.data = w.weight.f32() + begin * in;
+  part.weight = w.weight.Rows(begin, count);
   if (w.bias.data != nullptr) {
     part.bias.shape = {count};
     part.bias.data = w.bias.f32() + begin;

@@ -35,7 +35,7 @@ void AddCompute(CLI::App* app, Arguments* a) {
                   "Threads that compute, 1 to 64, default 1; results do not depend on it")
       ->type_name("N")
       ->check(CLI::Range(1, 64, ""));
-  app->add_option("--isa", a->isa, "Instruction set: scalar, sse2, avx2, avx512 or neon")
+  app->add_option("--isa", a->isa, "Instruction set, such as scalar, avx2 or avx512 (see --version)")
       ->type_name("NAME");
 }
 

@@ -1,6 +1,7 @@
 // Builds the text and the JSON of `infer-cli info` from the checked file, never from raw bytes.
 #include "models/cli/info.h"
 
+#include <map>
 #include <set>
 
 #include "models/cli/json.h"
@@ -47,16 +48,25 @@ std::uint64_t Parameters(const WeightsFile& weights) {
     for (const flatbuffers::String* name : *test->inputs()) others.insert(name->str());
     others.insert(test->output()->str());
   }
+  for (const WeightsFile::Entry& entry : weights.tensors()) others.insert(entry.scale);
   std::uint64_t count = 0;
   for (const WeightsFile::Entry& entry : weights.tensors()) {
-    if (entry.view.dtype == DType::kF32 && others.count(entry.name) == 0)
+    const DType dtype = entry.view.dtype;
+    const bool weight = dtype == DType::kF32 || dtype == DType::kBF16 || dtype == DType::kI8;
+    if (weight && others.count(entry.name) == 0)
       count += static_cast<std::uint64_t>(entry.view.shape.NumElements());
   }
   return count;
 }
 
-const char* NumpyName(DType dtype) {
-  return dtype == DType::kF32 ? "float32" : dtype == DType::kI32 ? "int32" : "uint8";
+/// "float32 1.2 MB, int8 85.1 MB": what the tensors of each type take.
+std::string TypesText(const WeightsFile& weights) {
+  std::map<DType, std::uint64_t> bytes;
+  for (const WeightsFile::Entry& entry : weights.tensors()) bytes[entry.view.dtype] += entry.bytes;
+  std::string text;
+  for (const auto& [dtype, sum] : bytes)
+    text += (text.empty() ? "" : ", ") + std::string(Name(dtype)) + " " + Bytes(sum);
+  return text;
 }
 
 // "(frames, 128 mel bins)"
@@ -78,8 +88,8 @@ std::string SpecsText(const std::vector<ArraySpec>& specs) {
   std::vector<std::vector<std::string>> rows;
   for (const ArraySpec& spec : specs) {
     const std::string unit = spec.unit.empty() || spec.unit == "-" ? "" : " [" + spec.unit + "]";
-    rows.push_back({spec.name, NumpyName(spec.dtype), SpecShape(spec),
-                    spec.required ? "" : "optional", spec.meaning + unit});
+    rows.push_back({spec.name, Name(spec.dtype), SpecShape(spec), spec.required ? "" : "optional",
+                    spec.meaning + unit});
   }
   return Table(rows, {}, "    ");
 }
@@ -134,7 +144,8 @@ std::string InfoText(const WeightsFile& weights, const std::vector<NamedNetwork>
   Fields fields = {{"size", Bytes(weights.file_size())},
                    {"format", std::to_string(weights.format_version())},
                    {"checksum", checksum},
-                   {"parameters", Grouped(Parameters(weights))}};
+                   {"parameters", Grouped(Parameters(weights))},
+                   {"types", TypesText(weights)}};
   const Fields provenance = ProvenanceFields(*weights.root().provenance());
   fields.insert(fields.end(), provenance.begin(), provenance.end());
   text += FieldsText(fields, kIndent);
@@ -142,7 +153,7 @@ std::string InfoText(const WeightsFile& weights, const std::vector<NamedNetwork>
   std::vector<std::vector<std::string>> rows;
   for (const WeightsFile::Entry& entry : weights.tensors()) {
     rows.push_back(
-        {entry.name, NumpyName(entry.view.dtype), entry.view.shape.ToString(), Bytes(entry.bytes)});
+        {entry.name, Name(entry.view.dtype), entry.view.shape.ToString(), Bytes(entry.bytes)});
   }
   return text + "\n" + Count(rows.size(), "tensor") + "\n" + Table(rows, {3});
 }
@@ -152,7 +163,7 @@ void SpecsJson(JsonWriter* json, const char* key, const std::vector<ArraySpec>& 
   for (const ArraySpec& spec : specs) {
     json->BeginObject()
         .Member("name", spec.name)
-        .Member("dtype", NumpyName(spec.dtype))
+        .Member("dtype", Name(spec.dtype))
         .Member("shape", spec.shape)  // -1: the input decides
         .Member("axes", spec.axes)
         .Member("required", spec.required)
@@ -195,7 +206,7 @@ std::string InfoJson(const WeightsFile& weights, const std::vector<NamedNetwork>
     for (int i = 0; i < entry.view.shape.rank(); ++i) shape.push_back(entry.view.shape[i]);
     json.BeginObject()
         .Member("name", entry.name)
-        .Member("dtype", NumpyName(entry.view.dtype))
+        .Member("dtype", Name(entry.view.dtype))
         .Member("shape", shape)
         .Member("bytes", entry.bytes)
         .EndObject();

@@ -26,7 +26,7 @@ std::string Join(const std::vector<std::string>& words) {
 
 std::vector<std::string> AvailableIsas() {
   std::vector<std::string> names;
-  for (const Isa isa : {Isa::kScalar, Isa::kSse2, Isa::kNeon, Isa::kAvx2, Isa::kAvx512}) {
+  for (const Isa isa : kernels::kAllIsas) {
     if (kernels::TableFor(isa) != nullptr) names.push_back(kernels::IsaName(isa));
   }
   return names;

@@ -114,9 +114,11 @@ void BindConvolutions(Binder& binder, const Model2Config& c, const std::string& 
   w->resize(static_cast<std::size_t>(c.convolutions));
   for (std::size_t i = 0; i < w->size(); ++i) {
     const std::string layer = name + "." + std::to_string(i);
-    binder.Bind(
-        {{layer + ".weight", &(*w)[i].weight, {c.d_model, i == 0 ? in : c.d_model, c.kernel}},
-         {layer + ".bias", &(*w)[i].bias, {c.d_model}}});
+    binder.Bind({{layer + ".weight",
+                  &(*w)[i].weight,
+                  {c.d_model, i == 0 ? in : c.d_model, c.kernel},
+                  Binder::kProduct},
+                 {layer + ".bias", &(*w)[i].bias, {c.d_model}}});
   }
 }
 
@@ -124,7 +126,8 @@ void BindConvolutions(Binder& binder, const Model2Config& c, const std::string& 
 
 void BindModel2(Binder& binder, const Model2Config& c, Model2Weights* w) {
   const std::int64_t d = c.d_model;
-  binder.Bind({{"f0_encoder.embedding.weight", &w->f0_embedding, {c.f0_tokens, d}}});
+  binder.Bind(
+      {{"f0_encoder.embedding.weight", &w->f0_embedding, {c.f0_tokens, d}, Binder::kProduct}});
   BindConvolutions(binder, c, "f0_encoder.conv", d, &w->f0_conv);
   w->encoder.resize(static_cast<std::size_t>(c.encoder_layers));
   for (std::size_t i = 0; i < w->encoder.size(); ++i) {
@@ -145,7 +148,7 @@ void BindModel2(Binder& binder, const Model2Config& c, Model2Weights* w) {
     Model2Weights::Stack& stack = w->decoders[static_cast<std::size_t>(channel.stack)];
     if (!stack.layers.empty()) continue;  // bound for an earlier channel
     const Binder::Scope scope(binder, "decoders." + std::to_string(channel.stack) + ".");
-    binder.Bind({{"embedding.weight", &stack.embedding, {channel.Tokens(), d}}});
+    binder.Bind({{"embedding.weight", &stack.embedding, {channel.Tokens(), d}, Binder::kProduct}});
     stack.layers.resize(static_cast<std::size_t>(c.decoder_layers));
     for (std::size_t i = 0; i < stack.layers.size(); ++i) {
       const Binder::Scope layer(binder, "layers." + std::to_string(i) + ".");

@@ -1,7 +1,7 @@
 // Runs a model in its steady state with every allocation, lock, mapping, write and throw of the
 // process intercepted: there must be none.
 //
-//   steady_state WEIGHTS|every-op|audio THREADS REPEATS [--plant]
+//   steady_state WEIGHTS|every-op|every-op-bf16|every-op-int8|audio THREADS REPEATS [--plant]
 //
 // The runs lie between two getppid() calls, so that a tracer can tell the system calls among them.
 // --plant allocates once in the middle, to show that the check can fail.
@@ -146,8 +146,8 @@ Subject ZsMstmOf(const char* path, int threads) {
   };
 }
 
-Subject EveryOpOf(int threads) {
-  auto model = std::make_shared<test::Model>(test::MakeEveryOp(kernels::BestTable()));
+Subject EveryOpOf(int threads, DType weights) {
+  auto model = std::make_shared<test::Model>(test::MakeEveryOp(kernels::BestTable(), {}, weights));
   if (model->plan == nullptr) return {};
   auto made = Session::Create(model->plan, {.threads = threads});
   if (!made.ok()) return Fail(made.status());
@@ -188,7 +188,9 @@ Subject Audio() {
 }
 
 Subject SubjectOf(const char* name, int threads) {
-  if (std::strcmp(name, "every-op") == 0) return EveryOpOf(threads);
+  if (std::strcmp(name, "every-op") == 0) return EveryOpOf(threads, DType::kF32);
+  if (std::strcmp(name, "every-op-bf16") == 0) return EveryOpOf(threads, DType::kBF16);
+  if (std::strcmp(name, "every-op-int8") == 0) return EveryOpOf(threads, DType::kI8);
   return std::strcmp(name, "audio") == 0 ? Audio() : ZsMstmOf(name, threads);
 }
 

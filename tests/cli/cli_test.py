@@ -255,7 +255,8 @@ class InfoTest(CliTest):
         self.assertIn("Exit codes", self.good("--help"))
         self.assertIn("available", self.good("--version"))
         self.assertIn(json.loads(self.good("--version", "--json"))["isa"],
-                      ("scalar", "sse2", "neon", "avx2", "avx512"))
+                      ("scalar", "sse2", "neon", "avx2", "avx512", "avx512_vnni",
+                       "avx512_bf16", "avx512_amx"))
 
 
 class ExampleTest(CliTest):

@@ -159,7 +159,7 @@ def test_reader_names_the_field(path, offset, value, message):
     (lambda r: r[1].update(offset=0), "overlaps"),
     (lambda r: r[1].update(offset=100), "overlaps another or ends outside"),
     (lambda r: r[3].update(offset=1 << 20), "ends outside"),
-    (lambda r: r[0].update(dtype="BF16", bytes=30), "dtype BF16"),
+    (lambda r: r[2].update(dtype="I8"), "I8 without a scale"),
     (lambda r: r.pop(), "end with 64 zero"),
 ])
 def test_reader_checks_records(path, tmp_path, tiny, monkeypatch, change, message):

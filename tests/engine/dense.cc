@@ -2,6 +2,7 @@
 #include "tests/engine/dense.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -24,6 +25,41 @@ TensorView Tensors::Make(Shape shape, std::uint32_t seed, float scale) {
 TensorView Tensors::Of(Shape shape, std::vector<float> values) {
   all_.push_back(std::make_unique<std::vector<float>>(std::move(values)));
   return {DType::kF32, shape, all_.back()->data()};
+}
+
+template <class T>
+T* Tensors::Keep(std::size_t count) {
+  const std::size_t floats = (count * sizeof(T) + sizeof(float) - 1) / sizeof(float);
+  all_.push_back(std::make_unique<std::vector<float>>(floats));
+  return reinterpret_cast<T*>(all_.back()->data());
+}
+
+TensorView Tensors::As(DType dtype, const TensorView& from) {
+  if (dtype == DType::kF32) return from;
+  TensorView to = from;
+  to.dtype = dtype;
+  const auto count = static_cast<std::size_t>(from.shape.NumElements());
+  const auto rows = static_cast<std::size_t>(from.shape[0]), cols = count / rows;
+  if (dtype == DType::kBF16) {
+    auto* bits = Keep<std::uint16_t>(count);
+    for (std::size_t i = 0; i < count; ++i)
+      bits[i] = static_cast<std::uint16_t>(std::bit_cast<std::uint32_t>(from.f32()[i]) >> 16);
+    to.data = bits;
+    return to;
+  }
+  auto* whole = Keep<std::int8_t>(count);
+  auto* scale = Keep<float>(rows);
+  for (std::size_t r = 0; r < rows; ++r) {
+    const float* x = from.f32() + r * cols;
+    float largest = 1e-6f;
+    for (std::size_t c = 0; c < cols; ++c) largest = std::max(largest, std::fabs(x[c]));
+    scale[r] = largest / 127.0f;
+    for (std::size_t c = 0; c < cols; ++c)
+      whole[r * cols + c] = static_cast<std::int8_t>(std::lround(x[c] / scale[r]));
+  }
+  to.data = whole;
+  to.scale = scale;
+  return to;
 }
 
 Dense ToDense(const TensorView& view) {

@@ -31,8 +31,13 @@ class Tensors {
  public:
   TensorView Make(Shape shape, std::uint32_t seed, float scale = 1.0f);
   TensorView Of(Shape shape, std::vector<float> values);
+  /// A float32 tensor rounded to another type, int8 with a scale for each row.
+  TensorView As(DType dtype, const TensorView& from);
 
  private:
+  template <class T>
+  T* Keep(std::size_t count);
+
   std::vector<std::unique_ptr<std::vector<float>>> all_;
 };
 

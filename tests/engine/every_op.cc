@@ -10,17 +10,16 @@ constexpr std::int64_t kRows = 12, kMel = 20, kWidth = 24, kSteps = 6, kPose = 8
 
 class Weights {
  public:
-  explicit Weights(Tensors& tensors) : tensors_(tensors) {}
+  Weights(Tensors& tensors, DType dtype) : tensors_(tensors), dtype_(dtype) {}
   LinearWeights Linear(std::int64_t out, std::int64_t in) {
     const float scale = 1.0f / std::sqrt(static_cast<float>(in));
-    return {tensors_.Make({out, in}, ++seed_, scale), tensors_.Make({out}, ++seed_, 0.1f)};
+    return {Matrix({out, in}, scale), tensors_.Make({out}, ++seed_, 0.1f)};
   }
   LinearWeights Conv(std::int64_t out, std::int64_t in, std::int64_t k) {
-    return {tensors_.Make({out, in, k}, ++seed_, 0.2f), tensors_.Make({out}, ++seed_, 0.1f)};
+    return {Matrix({out, in, k}, 0.2f), tensors_.Make({out}, ++seed_, 0.1f)};
   }
   LstmWeights Lstm(std::int64_t hidden, std::int64_t in) {
-    return {tensors_.Make({4 * hidden, in}, ++seed_, 0.3f),
-            tensors_.Make({4 * hidden, hidden}, ++seed_, 0.05f),
+    return {Matrix({4 * hidden, in}, 0.3f), Matrix({4 * hidden, hidden}, 0.05f),
             tensors_.Make({4 * hidden}, ++seed_), tensors_.Make({4 * hidden}, ++seed_)};
   }
   NormWeights Norm(std::int64_t d) {
@@ -29,10 +28,16 @@ class Weights {
   TensorView Of(Shape shape, std::vector<float> values) {
     return tensors_.Of(shape, std::move(values));
   }
-  TensorView Table(Shape shape) { return tensors_.Make(shape, ++seed_); }
+  TensorView Values(Shape shape) { return tensors_.Make(shape, ++seed_); }
+  TensorView Table(Shape shape) { return Matrix(shape, 1.0f); }
 
  private:
+  TensorView Matrix(Shape shape, float scale) {
+    return tensors_.As(dtype_, tensors_.Make(shape, ++seed_, scale));
+  }
+
   Tensors& tensors_;
+  DType dtype_;
   std::uint32_t seed_ = 100;
 };
 
@@ -71,7 +76,7 @@ Value Steps(Graph& g, Weights& w, Value memory) {
   const Value first = g.Constant({DType::kI32, {1, 1}, kFirst});
   const TensorView table = w.Table({kPose, kPose});
   const Value controls = g.Constant(w.Of({1, 2}, {0.8f, 4.0f}));  // temperature, top-k
-  const Value uniforms = g.Constant(w.Table({kSteps, 1}));
+  const Value uniforms = g.Constant(w.Values({kSteps, 1}));
   const Value time = g.Positions(kSteps, kPose);
   g.BeginLoop(kSteps);
   Value x = g.Add(g.Linear(g.PreviousRow(poses), w.Linear(kPose, kPose)), g.StepRow(time));
@@ -93,8 +98,8 @@ Value Steps(Graph& g, Weights& w, Value memory) {
 
 }  // namespace
 
-Graph EveryOp(Tensors& tensors) {
-  Weights w(tensors);
+Graph EveryOp(Tensors& tensors, DType weights) {
+  Weights w(tensors, weights);
   Graph g;
   const Value x = g.Input("x", {kRows, kMel});
   const Value ids = g.Input("ids", {kRows}, DType::kI32);
@@ -110,11 +115,11 @@ void FillEveryOp(const Session& session, std::uint32_t seed) {
   for (std::int32_t i = 0; i < kRows; ++i) session.Input("ids").i32[i] = i % 5;
 }
 
-Model MakeEveryOp(const kernels::KernelTable& kernels, const PlanOptions& options) {
+Model MakeEveryOp(const kernels::KernelTable& kernels, const PlanOptions& options, DType weights) {
   Model model;
   model.tensors = std::make_unique<Tensors>();
   WeightCache cache(kernels, nullptr);
-  auto plan = Plan::Make(EveryOp(*model.tensors), cache, options);
+  auto plan = Plan::Make(EveryOp(*model.tensors, weights), cache, options);
   if (plan.ok()) model.plan = *plan;
   return model;
 }

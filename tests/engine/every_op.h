@@ -11,7 +11,7 @@
 namespace gestus::test {
 
 /// Inputs "x" (12, 20) and "ids" (12,) int32, outputs "rows" (12, 24) and "steps" (6, 8).
-Graph EveryOp(Tensors& tensors);
+Graph EveryOp(Tensors& tensors, DType weights = DType::kF32);
 /// Writes inputs that depend on the seed.
 void FillEveryOp(const Session& session, std::uint32_t seed);
 
@@ -20,7 +20,9 @@ struct Model {
   std::unique_ptr<Tensors> tensors;
   std::shared_ptr<const Plan> plan;
 };
-Model MakeEveryOp(const kernels::KernelTable& kernels, const PlanOptions& options = {});
+/// `weights`: the type of all matrices.
+Model MakeEveryOp(const kernels::KernelTable& kernels, const PlanOptions& options = {},
+                  DType weights = DType::kF32);
 
 /// All output elements of a session, as they are in memory.
 std::vector<float> AllOutputs(const Session& session);

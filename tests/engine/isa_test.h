@@ -33,12 +33,9 @@ class IsaTest : public testing::TestWithParam<Isa> {
   const kernels::KernelTable* table_ = nullptr;
 };
 
-#define GESTUS_TEST_ON_EVERY_ISA(suite)                                                \
-  INSTANTIATE_TEST_SUITE_P(                                                            \
-      Isa, suite,                                                                      \
-      testing::Values(kernels::Isa::kScalar, kernels::Isa::kSse2, kernels::Isa::kNeon, \
-                      kernels::Isa::kAvx2, kernels::Isa::kAvx512),                     \
-      [](const auto& test) { return kernels::IsaName(test.param); })
+#define GESTUS_TEST_ON_EVERY_ISA(suite)                                      \
+  INSTANTIATE_TEST_SUITE_P(Isa, suite, testing::ValuesIn(kernels::kAllIsas), \
+                           [](const auto& test) { return kernels::IsaName(test.param); })
 
 }  // namespace gestus::test
 

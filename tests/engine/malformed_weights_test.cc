@@ -276,8 +276,7 @@ void AddTensorCases(Cases* cases) {
           {"NameInUtf8", "tensor number 3: name", named("n.\xc3\xa9")},
           {"NameTwice", "tensor n.a: name is used twice", named("n.a")},
           {"Dtype77", "tensor n.x: dtype 77", typed(77)},
-          {"DtypeReservedBf16", "tensor n.x: dtype 3", typed(3)},
-          {"DtypeReservedI8", "tensor n.x: dtype 4", typed(4)},
+          {"Dtype5", "tensor n.x: dtype 5", typed(5)},
           {"Dtype255", "tensor n.x: dtype 255", typed(255)},
           {"Rank5", "tensor n.x: rank 5", shaped({1, 1, 1, 1, 1})},
           {"Rank1000", "tensor n.x: rank 1000", shaped(std::vector<std::uint32_t>(1000, 1))},
@@ -326,12 +325,92 @@ void AddTensorCases(Cases* cases) {
       });
 }
 
+/// A file with the I8 tensor n.w (2, 2) and the tensors of its scale.
+Bytes WithI8(std::vector<TensorSpec> scales, const std::function<void(TensorSpec*)>& change = {}) {
+  TensorSpec w{.name = "n.w",
+               .shape = {2, 2},
+               .dtype = fb::DType::I8,
+               .scale = "n.w.scale",
+               .raw = {1, 2, 0x81, 0x7f}};
+  if (change) change(&w);
+  return BuildWith([&](FileSpec* s) {
+    s->tensors.push_back(w);
+    for (TensorSpec& scale : scales) s->tensors.push_back(scale);
+  });
+}
+
+void AddQuantisedCases(Cases* cases) {
+  const float inf = std::numeric_limits<float>::infinity();
+  const auto bf16 = [](std::vector<std::uint8_t> raw) {
+    return WithTensor({.name = "n.x", .shape = {2}, .dtype = fb::DType::BF16, .raw = raw});
+  };
+  const TensorSpec good{"n.w.scale", {2}, {1, 2}};
+  const auto scaled = [](TensorSpec scale) { return WithI8({scale}); };
+  cases->insert(
+      cases->end(),
+      {
+          {"Bf16Nan", "tensor n.x: holds NaN or infinity", bf16({0, 0, 0xc0, 0x7f})},
+          {"Bf16MinusInfinity", "tensor n.x: holds NaN or infinity", bf16({0x80, 0xff, 0, 0})},
+          {"Bf16BytesOfF32", "tensor n.x: 8 bytes, expected 4",
+           WithTensor({.name = "n.x", .shape = {2}, .dtype = fb::DType::BF16, .bytes = 8})},
+          {"I8WithoutScale", "tensor n.w: I8 without a scale",
+           WithI8({good}, [](TensorSpec* w) { w->scale = ""; })},
+          {"I8ScaleOfNoTensor", "tensor n.w: scale n.w.scale: no such tensor", WithI8({})},
+          {"I8ScaleTooShort", "scale n.w.scale: (1,) float32, expected (2,) float32",
+           scaled({"n.w.scale", {1}, {1}})},
+          {"I8ScaleTooLong", "scale n.w.scale: (3,)", scaled({"n.w.scale", {3}, {1, 1, 1}})},
+          {"I8ScaleOfAnotherRank", "scale n.w.scale: (2, 1)",
+           scaled({"n.w.scale", {2, 1}, {1, 1}})},
+          {"I8ScaleOfAnotherType", "scale n.w.scale: (2,) int32",
+           scaled({"n.w.scale", {2}, {1, 1}, fb::DType::I32})},
+          {"I8ScaleZero", "holds zero or less", scaled({"n.w.scale", {2}, {1, 0}})},
+          {"I8ScaleNegative", "holds zero or less", scaled({"n.w.scale", {2}, {-1, 1}})},
+          {"I8ScaleInfinite", "tensor n.w.scale: holds NaN or infinity",
+           scaled({"n.w.scale", {2}, {1, inf}})},
+          {"I8ScaleIsItself", "scale n.w: (2, 2) int8",
+           WithI8({good}, [](TensorSpec* w) { w->scale = "n.w"; })},
+          {"I8ScaleNameWithEscape", "tensor n.w: name of its scale",
+           WithI8({good}, [](TensorSpec* w) { w->scale = "\x1b[2J"; })},
+          {"I8ScaleNameTooLong", "tensor n.w: name of its scale",
+           WithI8({good}, [](TensorSpec* w) { w->scale = std::string(256, 's'); })},
+          {"I8ScaleShared", "belongs to another tensor too",
+           WithI8({good,
+                   {.name = "n.v",
+                    .shape = {2, 1},
+                    .dtype = fb::DType::I8,
+                    .scale = "n.w.scale",
+                    .raw = {1, 1}}})},
+          {"ScaleOfF32", "tensor n.x: has a scale, which only I8 has",
+           WithTensor({.name = "n.x", .shape = {1}, .values = {1}, .scale = "n.b"})},
+          {"ScaleOfBf16", "tensor n.x: has a scale, which only I8 has",
+           WithTensor({.name = "n.x",
+                       .shape = {1},
+                       .dtype = fb::DType::BF16,
+                       .scale = "n.b",
+                       .raw = {0, 0}})},
+          {"I8Minus128", "tensor n.w: holds -128",
+           WithI8({good},
+                  [](TensorSpec* w) {
+                    w->raw = {1, 2, 3, 0x80};
+                  })},
+          {"I8OfOneDimension", "tensor n.w: I8 with fewer than two dimensions",
+           WithI8({good}, [](TensorSpec* w) { w->shape = {4}; })},
+          {"I8RowTooLong", "tensor n.w: rows of 65537 I8 elements, expected at most 65536",
+           WithI8({good},
+                  [](TensorSpec* w) {
+                    w->shape = {2, 65537};
+                    w->raw.assign(2 * 65537, 1);
+                  })},
+      });
+}
+
 const Cases& AllCases() {
   static const Cases cases = [] {
     Cases all;
     AddHeaderCases(&all);
     AddMetadataCases(&all);
     AddTensorCases(&all);
+    AddQuantisedCases(&all);
     return all;
   }();
   return cases;

@@ -9,6 +9,7 @@
 #include <atomic>
 #include <cfenv>
 #include <chrono>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -74,6 +75,38 @@ TEST_P(SessionTest, TheSameBytesForAnyNumberOfThreads) {
     const auto session = MakeSession(model, {.threads = threads});
     for (std::uint32_t run = 0; run < (kSanitized ? 2 : 5); ++run)
       ASSERT_TRUE(SameBytes(RunOn(*session, run), RunOn(*alone, run))) << threads << " threads";
+  }
+}
+
+TEST_P(SessionTest, TheSameBytesForAnyNumberOfThreadsWithSmallWeights) {
+  for (const DType dtype : {DType::kBF16, DType::kI8}) {
+    const Model model = MakeEveryOp(*table_, {}, dtype);
+    const auto alone = MakeSession(model);
+    for (const int threads : {2, 3, 8}) {
+      const auto session = MakeSession(model, {.threads = threads});
+      for (std::uint32_t run = 0; run < 2; ++run)
+        ASSERT_TRUE(SameBytes(RunOn(*session, run), RunOn(*alone, run)))
+            << threads << " threads, " << Name(dtype);
+    }
+  }
+}
+
+// Rounded weights give nearly what the others give: bf16 keeps 8 bits, int8 7 of the largest.
+TEST_P(SessionTest, SmallWeightsAreNearTheOthers) {
+  const Model exact = MakeEveryOp(*table_);
+  const std::vector<float> want = RunOn(*MakeSession(exact), 3);
+  for (const DType dtype : {DType::kBF16, DType::kI8}) {
+    const Model model = MakeEveryOp(*table_, {}, dtype);
+    const std::vector<float> got = RunOn(*MakeSession(model), 3);
+    constexpr std::size_t kRowValues = 12 * 24;  // what follows depends on drawn tokens
+    double difference = 0, size = 0;
+    for (std::size_t i = 0; i < kRowValues; ++i) {
+      difference += std::pow(double{got[i]} - want[i], 2);
+      size += std::pow(double{want[i]}, 2);
+    }
+    EXPECT_GT(difference, 0);
+    EXPECT_LT(std::sqrt(difference / size), dtype == DType::kBF16 ? 0.02 : 0.05) << Name(dtype);
+    EXPECT_NE(model.plan->ToString().find(std::string("linear(") + Name(dtype)), std::string::npos);
   }
 }
 

@@ -16,20 +16,25 @@ using flatbuffers::Offset;
 std::uint64_t AlignUp(std::uint64_t n) { return (n + 63) / 64 * 64; }
 
 std::uint64_t PayloadBytes(const TensorSpec& t) {
-  std::uint64_t n = t.dtype == fb::DType::U8 ? 1 : 4;
+  const bool byte = t.dtype == fb::DType::U8 || t.dtype == fb::DType::I8;
+  std::uint64_t n = byte ? 1 : t.dtype == fb::DType::BF16 ? 2 : 4;
   for (std::uint32_t d : t.shape) n *= d;
   // A lie about the shape must not make the test write gigabytes.
-  return std::min<std::uint64_t>(n, std::max<std::uint64_t>(t.values.size() * 4, 4096));
+  const std::size_t given = std::max(t.values.size() * 4, t.raw.size());
+  return std::min<std::uint64_t>(n, std::max<std::uint64_t>(given, 4096));
 }
 
 Offset<fb::Tensor> AddTensor(FlatBufferBuilder& b, const TensorSpec& t, std::uint64_t offset) {
   const auto name = b.CreateString(t.name);
   const auto shape = b.CreateVector(t.shape);
+  flatbuffers::Offset<flatbuffers::String> scale;
+  if (!t.scale.empty()) scale = b.CreateString(t.scale);
   const auto start = b.StartTable();
   b.AddElement<std::uint64_t>(fb::Tensor::VT_BYTES, t.bytes.value_or(PayloadBytes(t)), 0);
   b.AddElement<std::uint64_t>(fb::Tensor::VT_OFFSET, t.offset.value_or(offset), 0);
   b.AddOffset(fb::Tensor::VT_SHAPE, shape);
   if (!t.without_name) b.AddOffset(fb::Tensor::VT_NAME, name);
+  if (!t.scale.empty()) b.AddOffset(fb::Tensor::VT_SCALE, scale);
   b.AddElement<std::uint8_t>(fb::Tensor::VT_DTYPE, static_cast<std::uint8_t>(t.dtype), 0);
   return Offset<fb::Tensor>(b.EndTable(start));
 }
@@ -108,6 +113,8 @@ Bytes FileSpec::Build() const {
     if (!t.values.empty())
       std::memcpy(data.data() + at, t.values.data(),
                   std::min<std::size_t>(t.values.size() * sizeof(float), data.size() - at));
+    if (!t.raw.empty())
+      std::copy(t.raw.begin(), t.raw.end(), data.begin() + static_cast<std::ptrdiff_t>(at));
   }
   data.resize(data.size() + 64);
   const auto tensor_list = b.CreateVector(records);

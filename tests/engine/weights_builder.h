@@ -19,12 +19,15 @@ using Bytes = std::vector<std::uint8_t>;
 struct TensorSpec {
   std::string name;
   std::vector<std::uint32_t> shape;
-  std::vector<float> values;  ///< payload; zeros when shorter than the shape asks for
+  std::vector<float> values{};  ///< payload; zeros when shorter than the shape asks for
   fb::DType dtype = fb::DType::F32;
 
   // What the record says instead of the truth.
   bool without_name = false;
   std::optional<std::uint64_t> offset{}, bytes{};
+
+  std::string scale{};              ///< none when empty
+  std::vector<std::uint8_t> raw{};  ///< payload of bf16 and i8, instead of `values`
 };
 
 struct StatisticsSpec {

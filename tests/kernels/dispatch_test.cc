@@ -14,10 +14,8 @@ namespace {
 using kernels::Isa;
 using kernels::KernelTable;
 
-constexpr Isa kAll[] = {Isa::kScalar, Isa::kSse2, Isa::kNeon, Isa::kAvx2, Isa::kAvx512};
-
 TEST(DispatchTest, NamesGoBothWays) {
-  for (const Isa isa : kAll) {
+  for (const Isa isa : kernels::kAllIsas) {
     Isa parsed = Isa::kNeon;
     ASSERT_TRUE(kernels::ParseIsa(kernels::IsaName(isa), &parsed));
     EXPECT_EQ(parsed, isa);
@@ -31,7 +29,7 @@ TEST(DispatchTest, NamesGoBothWays) {
 
 TEST(DispatchTest, TablesSayWhatTheyAre) {
   ASSERT_NE(kernels::TableFor(Isa::kScalar), nullptr);
-  for (const Isa isa : kAll) {
+  for (const Isa isa : kernels::kAllIsas) {
     const KernelTable* table = kernels::TableFor(isa);
     if (table == nullptr) continue;
     EXPECT_EQ(table->isa, isa);
@@ -58,15 +56,17 @@ TEST(DispatchDeathTest, EnvironmentLowersTheChoice) {
   };
   unsetenv("GESTUS_ISA");
   Isa best = Isa::kScalar;
-  for (const Isa isa : kAll) {
+  for (const Isa isa : kernels::kAllIsas) {
     if (kernels::TableFor(isa) == nullptr) continue;
-    best = isa;
+    // Where tiles are missing, it may be avoided though it is there (kernels/dispatch.cc).
+    const bool uncertain = isa == Isa::kAvx512Bf16 && kernels::TableFor(Isa::kAvx512Amx) == nullptr;
+    if (!uncertain) best = isa;
     EXPECT_EXIT(exit_if(kernels::IsaName(isa), isa), ::testing::ExitedWithCode(0), "")
         << kernels::IsaName(isa);
   }
   EXPECT_EXIT(exit_if("altivec", best), ::testing::ExitedWithCode(0), "");
   EXPECT_EXIT(exit_if("", best), ::testing::ExitedWithCode(0), "");
-  for (const Isa isa : kAll) {
+  for (const Isa isa : kernels::kAllIsas) {
     if (kernels::TableFor(isa) != nullptr) continue;
     EXPECT_EXIT(exit_if(kernels::IsaName(isa), best), ::testing::ExitedWithCode(0), "")
         << kernels::IsaName(isa);

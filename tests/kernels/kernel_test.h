@@ -40,9 +40,7 @@ inline std::string IsaOfParam(const ::testing::TestParamInfo<Isa>& info) {
 
 #define GESTUS_TEST_ON_EVERY_ISA(suite)                                                  \
   INSTANTIATE_TEST_SUITE_P(                                                              \
-      Isa, suite,                                                                        \
-      ::testing::Values(Isa::kScalar, Isa::kSse2, Isa::kNeon, Isa::kAvx2, Isa::kAvx512), \
-      IsaOfParam)
+      Isa, suite, ::testing::ValuesIn(kernels::kAllIsas), IsaOfParam)
 
 /// 1 .. 2W+1 for the widest vectors, then primes and round sizes.
 std::vector<std::size_t> AwkwardSizes();
