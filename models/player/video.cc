@@ -110,16 +110,16 @@ class Program {
     return true;
   }
 
-  /// Waits for its end; whether that was a good one.
-  bool Finish() {
+  /// Waits for its end; gives its exit status, or -1 when a signal ended it.
+  int Finish() {
     input_ = Descriptor();
-    if (pid_ < 0) return false;
-    int status = 0;
+    if (pid_ < 0) return -1;
+    int status = -1;
     while (::waitpid(pid_, &status, 0) < 0) {
       if (errno != EINTR) break;
     }
     pid_ = -1;
-    return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }
 
  private:
@@ -128,6 +128,10 @@ class Program {
   Descriptor input_;
   pid_t pid_ = -1;
 };
+
+/// What a child exits with when its program could not be started and posix_spawnp did not learn of
+/// it (POSIX allows that; qemu-user does so).
+constexpr int kNoSuchProgram = 127;
 
 std::string LastLine(const std::string& text) {
   const std::size_t end = text.find_last_not_of(" \r\n");
@@ -170,7 +174,9 @@ Status FindFfmpeg() {
   if (!said.ok()) return said.status();
   Result<Program> program = Program::Start({"ffmpeg", "-version"}, {}, said->get());
   if (!program.ok()) return program.status();
-  if (program->Finish()) return Status();
+  const int status = program->Finish();
+  if (status == 0) return Status();
+  if (status == kNoSuchProgram) return NotFound();
   return Status(Code::kNotFound, "the program ffmpeg cannot be run, expected that of ffmpeg.org");
 }
 
@@ -199,7 +205,9 @@ Result<std::string> MakeVideo(const Show& show, const VideoOptions& options) {
   bool listens = true;
   for (std::int64_t i = 0; listens && i < count; ++i)
     listens = ffmpeg->Write(pictures.At(static_cast<double>(i) / options.rate).bytes());
-  if (!ffmpeg->Finish() || !listens) {
+  const int status = ffmpeg->Finish();
+  if (status == kNoSuchProgram) return NotFound();
+  if (status != 0 || !listens) {
     const Result<std::string> text = ReadAll(said->get());
     return Status(Code::kIo, "ffmpeg failed and said: " + LastLine(text.ok() ? *text : ""));
   }
