@@ -5,15 +5,16 @@ import argparse
 import sys
 
 from ..errors import ConvertError
+from . import commands as training
 
-PARTS = ()  # modules with add_commands(commands); a command's options have .run(options)
+PARTS = (training,)  # modules with add(commands); the options of a command have .run(options)
 
 
 def main(arguments=None):
     parser = argparse.ArgumentParser(prog="python3 -m converters.training", description=__doc__)
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
     for part in PARTS:
-        part.add_commands(commands)
+        part.add(commands)
     options = parser.parse_args(arguments)
     try:
         return options.run(options) or 0
