@@ -7,8 +7,9 @@ import sys
 from ..errors import ConvertError
 from . import commands as training
 from .corpus import command as corpus
+from .data import command as prepare
 
-PARTS = (corpus, training)  # modules with add(commands); the options of a command have .run(options)
+PARTS = (corpus, prepare, training)  # modules with add(commands); the options of a command have .run(options)
 
 
 def main(arguments=None):

@@ -1,5 +1,6 @@
-"""Runs infer-cli: what its commands write, as arrays."""
+"""Runs infer-cli: what its commands write, as arrays, and what they say."""
 
+import json
 import pathlib
 import subprocess
 import tempfile
@@ -12,17 +13,18 @@ DEFAULT = "build/release/bin/infer-cli"
 
 
 def arrays_of(infer_cli, arguments):
-    """{array} that `infer-cli ARGUMENTS -o FILE.npz` writes; its error line becomes ours."""
+    """({array}, report) of `infer-cli ARGUMENTS --json -o FILE.npz`; its error line becomes ours."""
     with tempfile.TemporaryDirectory() as folder:
         output = pathlib.Path(folder) / "out.npz"
+        command = [infer_cli, *map(str, arguments), "--json", "-o", str(output)]
         try:
-            done = subprocess.run([infer_cli, *map(str, arguments), "-o", str(output)],
-                                  capture_output=True, text=True, check=False)
+            done = subprocess.run(command, capture_output=True, text=True, check=False)
         except OSError as error:
             raise ConvertError(f"--infer-cli: {infer_cli}: {error.strerror}, expected the program "
-                               "that `./run test` builds") from None
+                               "that `./run demo` builds") from None
         if done.returncode != 0:
-            raise ConvertError(done.stderr.strip().splitlines()[-1][:400] if done.stderr.strip()
+            said = done.stderr.strip().splitlines()
+            raise ConvertError(said[-1][:400] if said
                                else f"{infer_cli}: exit code {done.returncode}")
         with np.load(output) as file:
-            return dict(file)
+            return dict(file), json.loads(done.stdout)

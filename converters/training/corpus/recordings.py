@@ -115,7 +115,7 @@ def _write_speech(at, samples, sentences, times, chance):
 
 
 def _write_prosody(at, samples, infer_cli):
-    f0 = engine.arrays_of(infer_cli, ["features", at / "speech.wav"])["pitch"]
+    f0 = engine.arrays_of(infer_cli, ["features", at / "speech.wav"])[0]["pitch"]
     level = prosody.loudness(samples.astype(np.float64), speech.RATE)
     np.savez(at / "prosody.npz", f0=f0, loudness=level.astype(np.float32))
 
