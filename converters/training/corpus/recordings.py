@@ -16,10 +16,8 @@ import numpy as np
 from .. import engine
 from . import gesture, prosody, speech, style, texts
 
-# Of a seen speaker's utterances: the last tenth but two parts is dev, the last two parts are test.
-_SECONDS = 15.0  # an utterance is about this long
-_WORDS = (26, 46)
-_DEV, _TEST = 0.08, 0.12
+_SECONDS = 15.0  # an utterance of Plan.words lasts about so long
+_DEV, _TEST = 0.08, 0.12  # shares of a seen speaker's utterances
 
 
 @dataclasses.dataclass(frozen=True)
@@ -30,13 +28,15 @@ class Plan:
     speakers: int = 40
     unseen: int = 8
     texts: int = 12000
+    fewest: int = 4  # utterances of a speaker
+    words: tuple = (26, 46)  # of an utterance, at least so many
 
 
 def people(plan):
     """{speaker: (Voice, Style, splits of its utterances)}"""
     found = {}
     total = plan.speakers + plan.unseen
-    each = max(4, round(plan.hours * 3600 / _SECONDS / total))
+    each = max(plan.fewest, round(plan.hours * 3600 / _SECONDS / total))
     for unseen, count in ((False, plan.speakers), (True, plan.unseen)):
         rng = np.random.default_rng([plan.seed, unseen])
         voices = style.draw_voices(count, rng, unseen)
@@ -59,7 +59,7 @@ def make(folder, plan, infer_cli, jobs=1, say=lambda line: None):
     rng = np.random.default_rng([plan.seed, 9])
     texts.write_tsv(folder / "texts.tsv", texts.sample(plan.texts, rng))
     speakers = people(plan)
-    work = [(folder, plan.seed, n, name, *speakers[name], infer_cli)
+    work = [(folder, plan, n, name, *speakers[name], infer_cli)
             for n, name in enumerate(speakers)]
     entries = []
     with concurrent.futures.ProcessPoolExecutor(jobs) as pool:
@@ -77,13 +77,13 @@ def make(folder, plan, infer_cli, jobs=1, say=lambda line: None):
 
 def _speaker(work):
     """Entries of a speaker's utterances, all of which one process of espeak-ng reads in order."""
-    folder, seed, number, name, voice, motion, splits, infer_cli = work
-    rng = np.random.default_rng([seed, 10, number])
+    folder, plan, number, name, voice, motion, splits, infer_cli = work
+    rng = np.random.default_rng([plan.seed, 10, number])
     entries = []
     with speech.Reader(voice) as reader:
         for n, split in enumerate(splits):
             identity = f"{name}-{n + 1:03d}"
-            sentences = texts.monologue(split, rng, int(rng.integers(*_WORDS)))
+            sentences = texts.monologue(split, rng, int(rng.integers(*plan.words)))
             samples, times = reader.read(sentences, rng)
             at = folder / name / identity
             at.mkdir(parents=True, exist_ok=True)
