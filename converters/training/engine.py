@@ -13,7 +13,7 @@ DEFAULT = "build/release/bin/infer-cli"
 
 
 def arrays_of(infer_cli, arguments):
-    """({array}, report) of `infer-cli ARGUMENTS --json -o FILE.npz`; its error line becomes ours."""
+    """({array}, report) of `infer-cli ARGUMENTS --json -o FILE.npz`; its error becomes ours."""
     with tempfile.TemporaryDirectory() as folder:
         output = pathlib.Path(folder) / "out.npz"
         command = [infer_cli, *map(str, arguments), "--json", "-o", str(output)]

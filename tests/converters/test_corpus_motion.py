@@ -94,7 +94,8 @@ def test_links_in_the_picture_are_no_longer_than_they_are():
         assert not xy[:, 0].any()
         most = 1 / np.cos(0.3 + 0.25)  # as the frame is scaled by the shoulder that is turned
         for a, b, length in ((1, 2, figure.UPPER_ARM), (2, 3, figure.FOREARM),
-                             (4, 5, figure.UPPER_ARM), (5, 6, figure.FOREARM), (6, 10, figure.HAND)):
+                             (4, 5, figure.UPPER_ARM), (5, 6, figure.FOREARM),
+                             (6, 10, figure.HAND)):
             assert np.linalg.norm(xy[:, a] - xy[:, b], axis=1).max() < length * most
 
 

@@ -1,4 +1,4 @@
-"""Recordings become prepared data sets: folders of people, PATS, the corpus, and what is refused."""
+"""Recordings become prepared data sets: folders of people, PATS, the corpus, what is refused."""
 
 import argparse
 import json
@@ -138,7 +138,8 @@ def test_a_folder_of_people(tmp_path, front_end):
     assert arrays["pose"][40, 11 + 3] < arrays["pose"][2, 11 + 3] - 40
     # One sentence, one act, on its frames and no others.
     tags = arrays["tags"]
-    assert tags[3:40].sum(axis=1).tolist() == [1] * 37 and not tags[:3].any() and not tags[41:].any()
+    assert tags[3:40].sum(axis=1).tolist() == [1] * 37
+    assert not tags[:3].any() and not tags[41:].any()
 
 
 @needs_cli

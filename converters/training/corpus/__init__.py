@@ -1,4 +1,4 @@
-"""A synthetic corpus: espeak-ng reads sentences of a grammar, and a parametric gesturer moves to them.
+"""A synthetic corpus: espeak-ng reads sentences of a grammar, a parametric gesturer moves to them.
 
 grammar.py sentences with known dialog acts   texts.py monologues and their splits
 espeak.py, speech.py sound and word times     prosody.py what a gesturer hears

@@ -2,8 +2,8 @@
 
 It runs in a process of its own, so that its global state begins anew for each speaker (the same
 requests give the same bytes) and a fault in it ends nothing else.  A request is a line of JSON:
-{"voice", "rate", "pitch", "range", "ssml"}; the answer a line {"rate", "samples", "events"} and then
-the samples, 16 bits each.  Events are [sample, type, text position, length, phoneme].
+{"voice", "rate", "pitch", "range", "ssml"}; the answer a line {"rate", "samples", "events"} and
+then the samples, 16 bits each.  Events are [sample, type, text position, length, phoneme].
 """
 
 import ctypes

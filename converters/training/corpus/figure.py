@@ -50,8 +50,8 @@ def _rotated(points, angle, a, b):
 
 def arm(shoulder, way, side):
     """(elbow, wrist, hand), each (frames, 3).  way: (frames, 3) outward, up and forward from the
-    shoulder; side: 1 for the speaker's left, -1.  A wrist out of reach stays on the line to where it
-    was wanted."""
+    shoulder; side: 1 for the speaker's left, -1.  A wrist out of reach stays on the line to where
+    it was wanted."""
     to = way * [side, -1, 1]
     length = np.linalg.norm(to, axis=1, keepdims=True)
     reach = np.clip(length, 1.1 * (UPPER_ARM - FOREARM), 0.995 * (UPPER_ARM + FOREARM))

@@ -14,7 +14,8 @@ _SLOTS = {
     "ONE": "{the {THING}|a {PLAIN} {THING}|the {BIG} {THING}|a {SMALL} {THING}|my {THING}|"
            "the {PLAIN} {THING}|our {BIG} {THING}|{PLAIN} {STUFF}|the {STUFF}}",
     "WHAT": "{{ONE}|{ONE}|{ONE}|{NUMBER} {PLAIN} {THING}s|{MANY} {THING}s}",
-    "WHERE": "{near the {THING}|behind the {THING}|{PLACE}|in the {THING}|beside the {PLAIN} {THING}|}",
+    "WHERE": "{near the {THING}|behind the {THING}|{PLACE}|in the {THING}|"
+             "beside the {PLAIN} {THING}|}",
     "WHEN": "{today|tonight|on Monday|in the morning|after dinner|every week|at night|}",
     "PAST": "{yesterday|last year|on Monday|this morning|after dinner|}",
 }
@@ -137,7 +138,8 @@ TEMPLATES = {
         "How {GOOD} {the|this} {THING} is {WHEN}!", "I {FEEL} {WHAT} *{DEGREE}!",
     ),
     "Conventional-opening": (
-        "*Hello, and welcome to {SUBJECT} {THING}.", "Good {morning|evening}, {I am|we are} {in the {THING}|near the {THING}|{PLACE}}.",
+        "*Hello, and welcome to {SUBJECT} {THING}.",
+        "Good {morning|evening}, {I am|we are} {in the {THING}|near the {THING}|{PLACE}}.",
         "Hi, I am {the|your} {PERSON} of the {THING}.", "*Welcome, {this|that} is {WHAT}.",
         "Good {morning|evening}, how are you {WHEN}?",
     ),
@@ -147,7 +149,8 @@ TEMPLATES = {
         "That is all about {WHAT}, *goodbye.",
     ),
     "No answers": ("*No.", "No, {never|nothing|not at all}.", "*No, {WHO} did *not."),
-    "Yes answers": ("*Yes.", "Yes, {WHO} did.", "Yeah, {always|often|now|{PLACE}}.", "Yes, {DEGREE}."),
+    "Yes answers": ("*Yes.", "Yes, {WHO} did.", "Yeah, {always|often|now|{PLACE}}.",
+                    "Yes, {DEGREE}."),
     "Negative non-no answers": (
         "{WHO} did *not {DO} {WHAT}.", "*Not {DEGREE}, I {DID} {WHAT}.", "I don't {DO} {WHAT}.",
         "We *never {DO} {WHAT} {WHEN}.", "It isn't {GOOD} to {DO} {WHAT}.",

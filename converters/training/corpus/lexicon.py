@@ -27,7 +27,8 @@ CLASSES = {
     "MOVE": (0.8, "sweep", "walk travel move cross follow carry bring pass"),
     "MOVES": (0.8, "sweep", "walks travels moves crosses flows runs spreads turns"),
     "PLACE": (0.7, "point", "here there outside everywhere upstairs nearby downtown"),
-    "TIME": (0.65, "sweep", "today tomorrow yesterday tonight now soon later always often monday morning week"),
+    "TIME": (0.65, "sweep", "today tomorrow yesterday tonight now soon later always often "
+                             "monday morning week"),
     "GOOD": (0.7, "raise", "good wonderful beautiful excellent brilliant lovely perfect fine"),
     "BAD": (0.7, "lower", "bad terrible awful difficult boring dangerous painful ugly"),
     "PLAIN": (0.55, "beat", "new old warm cold bright dark quiet loud simple strange modern "

@@ -1,4 +1,4 @@
-"""What a gesturer hears: the pitch by the engine's SWIPE', the loudness, and the accent of each word."""
+"""What a gesturer hears: the pitch by the engine's SWIPE', loudness, and the accent of words."""
 
 import dataclasses
 

@@ -121,7 +121,7 @@ def _write_prosody(at, samples, infer_cli):
 
 
 def load(at):
-    """(words, sentences, Prosody, seconds, seed) of an utterance's folder, as gesture() takes them."""
+    """(words, sentences, Prosody, seconds, seed) of an utterance's folder, for gesture()."""
     at = pathlib.Path(at)
     stored = json.loads((at / "utterance.json").read_text())
     words = [(w["word"], w["start"], w["end"], w["emphasis"]) for w in stored["words"]]

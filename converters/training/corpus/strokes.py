@@ -50,8 +50,8 @@ def threshold(style):
 
 
 def plan(words, accents, style, rng):
-    """[Stroke] of [(text, start, end, emphasis)].  Draws the same random numbers whatever the style,
-    so that two styles of one utterance differ by the styles alone."""
+    """[Stroke] of [(text, start, end, emphasis)].  Draws the same random numbers in every style, so
+    that two styles of one utterance differ by the styles alone."""
     strokes, free = [], -np.inf
     pause = 1.0 - 0.65 * style.frequency  # s between onsets
     for (text, start, end, emphasis), accent in zip(words, accents):

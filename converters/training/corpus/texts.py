@@ -1,7 +1,7 @@
 """What is said: monologues of some sentences, and which split a sentence belongs to.
 
-A sentence belongs to one split for ever, by the digest of its text, so no seed, speaker or size of a
-corpus can bring a held-out sentence into training.
+A sentence belongs to one split for ever, by the digest of its text, so no seed, speaker or size of
+a corpus can bring a held-out sentence into training.
 """
 
 import dataclasses

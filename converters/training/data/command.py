@@ -11,7 +11,7 @@ from .prepare import prepare
 def add(commands):
     parser = commands.add_parser("prepare", help="recordings, or PATS, to the features that "
                                                  "training reads")
-    parser.add_argument("folder", metavar="FOLDER/", help="the corpus, your own recordings, or PATS")
+    parser.add_argument("folder", metavar="FOLDER/", help="the corpus, your recordings, or PATS")
     parser.add_argument("-o", "--output", required=True, metavar="DATA/")
     parser.add_argument("--front-end", metavar="FRONTEND.fb",
                         help="weights file with the BERT, and the classifier of dialog acts")

@@ -39,8 +39,8 @@ class Utterance:
 
 
 class Dataset:
-    """`arrays`: the names that every utterance has, of layout.ALL; `features`: how they were made, as
-    weights files say it; `known_speakers`: what a corpus knows of its speakers, by name."""
+    """`arrays`: the names that every utterance has, of layout.ALL; `features`: how they were made,
+    as weights files say it; `known_speakers`: what a corpus knows of its speakers, by name."""
 
     def __init__(self, folder, header, utterances, cache_bytes=CACHE_BYTES):
         self.folder = pathlib.Path(folder)

@@ -1,7 +1,7 @@
 """The engine's front end for recordings: what networks would be fed with, by `infer-cli features`.
 
-The front end's weights file holds a BERT and, if it likes, a classifier of dialog acts.  Beside them
-go two networks of random weights whose inputs say what is to be made: one that takes frames
+The front end's weights file holds a BERT and perhaps a classifier of dialog acts.  Beside them go
+two networks of random weights whose inputs say what is to be made: one that takes frames
 (ZS-MSTM 2.0) and one that takes words (Model 1).
 """
 

@@ -9,8 +9,8 @@ from . import layout
 
 
 class Writer:
-    """`header`: face_rate, front_end, d_text, mel_bins; also features and speakers, if known.  The data set is there once close() wrote
-    dataset.json."""
+    """`header`: face_rate, front_end, d_text, mel_bins; also features and speakers, if known.  The
+    data set is there once close() wrote dataset.json."""
 
     def __init__(self, folder, header):
         self.folder = pathlib.Path(folder)
