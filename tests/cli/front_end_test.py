@@ -239,6 +239,8 @@ class NetworksTest(FrontEndTest):
         self.assertEqual(set(every) - set(few), {"log_mel", "pitch", "pitch_strength", "jitter",
                                                  "shimmer", "hnr", "hammarberg"})
         self.assert_same(few, {name: every[name] for name in few})
+        self.bad("features", "talk.wav", "--no-sound", "-o", "none.npz",
+                 says=["talk.wav: nothing is left without the stages of the sound"])
 
 
 @unittest.skipUnless(os.path.isdir(os.path.join(ROOT, "../shared/data")) or

@@ -61,7 +61,7 @@ class FrontEnd:
         return _cut(found)
 
     def _run(self, network, inputs):
-        return engine.arrays_of(self.infer_cli, ["features", self.file, *inputs,
+        return engine.arrays_of(self.infer_cli, ["features", self.file, *inputs, "--no-sound",
                                                  "--network", network])
 
     def _words(self, recording):

@@ -1,4 +1,4 @@
-"""PATS (Ahuja et al. 2020) to a prepared data set: its own features and split, Table 6.2's speakers.
+"""PATS (Ahuja et al. 2020) to a prepared data set: its features and split, Table 6.2's speakers.
 
 PATS/cmu_intervals_df.csv                  (or below data/)
 PATS/processed/SPEAKER/INTERVAL.h5         (or data/processed/...)
