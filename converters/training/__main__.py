@@ -6,8 +6,10 @@ import sys
 
 from ..errors import ConvertError
 from . import commands as training
+from .corpus import command as corpus
+from .data import command as prepare
 
-PARTS = (training,)  # modules with add(commands); the options of a command have .run(options)
+PARTS = (corpus, prepare, training)  # modules with add(commands); the options of a command have .run(options)
 
 
 def main(arguments=None):

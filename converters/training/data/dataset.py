@@ -39,7 +39,8 @@ class Utterance:
 
 
 class Dataset:
-    """`arrays`: the names that every utterance has, of layout.ALL."""
+    """`arrays`: the names that every utterance has, of layout.ALL; `features`: how they were made, as
+    weights files say it; `known_speakers`: what a corpus knows of its speakers, by name."""
 
     def __init__(self, folder, header, utterances, cache_bytes=CACHE_BYTES):
         self.folder = pathlib.Path(folder)
@@ -47,6 +48,8 @@ class Dataset:
         self.rate = header["rate"]
         self.face_rate = header["face_rate"]
         self.front_end = header["front_end"]
+        self.features = header.get("features", {})
+        self.known_speakers = header.get("speakers", {})
         self.d_text = header["d_text"]
         self.mel_bins = header["mel_bins"]
         self.columns = layout.columns(self.mel_bins, self.d_text)

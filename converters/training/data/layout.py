@@ -6,6 +6,7 @@ data/SPEAKER/ID.npz   the arrays
 
 VERSION = 1
 FRAME_RATE = 15.0  # of speech, text, pose, face and tags
+FACE_RATE = 24.0  # of au, as infer-cli takes tokens of faces to be placed
 SPLITS = ("train", "dev", "test", "unseen")
 POSE_COLUMNS = 22  # x of PATS' first eleven joints, then y (converters/kinds/zs_mstm1.py)
 FACE_COLUMNS = 30  # x of fifteen landmarks, then y (docs/models.md)
