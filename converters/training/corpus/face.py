@@ -13,8 +13,8 @@ ANGLES = ("Rx", "Ry", "Rz")
 
 # Height of an action unit's pulse on a word of a class, at prominence 1.
 _WORD_PULSES = {
-    "DEGREE": {"AU05": 2.0, "AU01": 0.8, "AU02": 0.8},
-    "BIG": {"AU05": 2.4, "AU01": 1.0, "AU02": 1.0},
+    "DEGREE": {"AU05": 2.6, "AU01": 0.8, "AU02": 0.8},
+    "BIG": {"AU05": 3.0, "AU01": 1.0, "AU02": 1.0},
     "SMALL": {"AU07": 2.2, "AU04": 0.6},
     "NEGATION": {"AU04": 2.6, "AU07": 1.2}, "NO": {"AU04": 2.6, "AU07": 1.2},
     "BAD": {"AU04": 2.2, "AU07": 1.6}, "FALL": {"AU04": 1.2}, "FALLS": {"AU04": 1.2},
@@ -22,29 +22,29 @@ _WORD_PULSES = {
     "THANKS": {"AU06": 2.8, "AU01": 0.8}, "GREET": {"AU06": 2.4, "AU01": 1.2, "AU02": 1.2},
     "YES": {"AU06": 1.6}, "SORRY": {"AU01": 2.4, "AU04": 2.2},
     "WH": {"AU04": 1.4, "AU02": 0.8}, "THINK": {"AU04": 1.2, "AU07": 0.8},
-    "MAYBE": {"AU02": 1.6, "AU01": 1.0}, "RISE": {"AU05": 1.2}, "RISES": {"AU05": 1.2},
-    "MANY": {"AU05": 1.4, "AU02": 1.0},
+    "MAYBE": {"AU02": 1.6, "AU01": 1.0}, "RISE": {"AU05": 1.6}, "RISES": {"AU05": 1.6},
+    "MANY": {"AU05": 1.8, "AU02": 1.0},
 }
 # Brows on every accented word, however it is classed.
 _ACCENT = {"AU01": 2.0, "AU02": 2.2}
 # While a sentence of an act lasts.
-_QUESTION = {"AU01": 1.3, "AU02": 1.3, "Rx": -0.07, "Rz": 0.07}
+_QUESTION = {"AU01": 1.3, "AU02": 1.3, "Rx": -0.10, "Rz": 0.12}
 _SENTENCES = {
     "Yes-No-Question": _QUESTION, "Declarative Yes-No-Question": _QUESTION,
     "Tag-Question": _QUESTION, "Or-Clause": _QUESTION, "Open-Question": _QUESTION,
-    "Wh-Question": {"AU04": 1.1, "AU01": 0.3, "Rz": 0.09},
-    "Rhetorical-Questions": {"AU04": 0.8, "AU02": 0.6, "Rz": -0.09},
-    "Apology": {"AU01": 1.2, "AU04": 1.2, "Rx": 0.10},
-    "Thanking": {"AU06": 1.2, "Rx": 0.06}, "Appreciation": {"AU06": 1.0, "AU05": 0.8, "Rx": -0.05},
+    "Wh-Question": {"AU04": 1.1, "AU01": 0.3, "Rz": 0.14},
+    "Rhetorical-Questions": {"AU04": 0.8, "AU02": 0.6, "Rz": -0.14},
+    "Apology": {"AU01": 1.2, "AU04": 1.2, "Rx": 0.16},
+    "Thanking": {"AU06": 1.2, "Rx": 0.10}, "Appreciation": {"AU06": 1.0, "AU05": 0.8, "Rx": -0.08},
     "Agree/Accept": {"AU06": 0.7}, "Conventional-opening": {"AU06": 1.2, "AU01": 0.5, "AU02": 0.5},
-    "Conventional-closing": {"AU06": 1.0}, "Hedge": {"AU07": 0.8, "Rz": -0.07},
-    "Maybe/Accept-part": {"AU02": 0.6, "Rz": -0.07}, "Negative non-no answers": {"AU04": 0.6},
-    "Statement-opinion": {"AU07": 0.4}, "Action-directive": {"AU05": 0.5, "Rx": 0.04},
+    "Conventional-closing": {"AU06": 1.0}, "Hedge": {"AU07": 0.8, "Rz": -0.12},
+    "Maybe/Accept-part": {"AU02": 0.6, "Rz": -0.12}, "Negative non-no answers": {"AU04": 0.6},
+    "Statement-opinion": {"AU07": 0.4}, "Action-directive": {"AU05": 0.5, "Rx": 0.06},
 }
 _BASE = 0.15  # of an action unit that does nothing
 _HIGHEST = 4.5
 # Where the head turns on a word, in rad: shapes of strokes that point somewhere.
-_TURNS = {"point": 0.12, "sweep": 0.16, "offer": 0.05, "wide": 0.08}
+_TURNS = {"point": 0.24, "sweep": 0.30, "offer": 0.12, "wide": 0.16}
 _SHAKES, _NODS = ("NEGATION", "NO"), ("YES",)
 
 
@@ -68,8 +68,8 @@ def curves(times, words, prominences, sentences, prosody, style, rng):
     units = _BASE + style.face * units + 0.04 * rng.normal(size=units.shape)
     angles = np.stack([bumps(times, pulses[name]) + plateaus(times, states[name], 0.45)
                        for name in ANGLES], axis=1)
-    angles[:, 0] -= 0.012 * np.clip(tones, -5, 5)
-    angles = style.head * angles + 0.003 * _drift(times, rng)
+    angles[:, 0] -= 0.018 * np.clip(tones, -5, 5)
+    angles = style.head * angles + 0.006 * _drift(times, rng)
     return np.clip(_HIGHEST * np.tanh(units / _HIGHEST), 0, 5), angles
 
 
@@ -86,18 +86,18 @@ def _add_word(pulses, text, start, end, strength, accent):
     if name in _SHAKES:
         side = 1
         for n in range(3):
-            pulses["Ry"].append((start + 0.16 * n, 0.32, 0.16 * side * strength))
+            pulses["Ry"].append((start + 0.16 * n, 0.32, 0.26 * side * strength))
             side = -side
     elif name in _NODS:
         for n in range(2):
-            pulses["Rx"].append((start + 0.28 * n, 0.36, 0.16 * strength))
+            pulses["Rx"].append((start + 0.28 * n, 0.36, 0.24 * strength))
     else:
-        pulses["Rx"].append((start, lasting, (0.05 + 0.12 * accent) * strength))
+        pulses["Rx"].append((start, lasting, (0.08 + 0.18 * accent) * strength))
     if shape in _TURNS:
         side = 1 if lexicon.fraction("side " + text.lower().strip(".,?!")) < 0.5 else -1
         pulses["Ry"].append((start, lasting + 0.3, side * _TURNS[shape] * strength))
     if shape in ("open", "narrow", "temple"):
-        pulses["Rz"].append((start, lasting + 0.2, 0.10 * strength))
+        pulses["Rz"].append((start, lasting + 0.2, 0.18 * strength))
 
 
 def _drift(times, rng):

@@ -36,7 +36,7 @@ def face(times, units, angles, loudness, blinks, scale):
         moved[:, lower, 1] -= 0.8 * au["AU06"] + 0.9 * au["AU07"]
         moved[:, upper, 1] += -1.1 * au["AU05"] + 0.5 * au["AU07"]
         gap = _POINTS[lower, 1] + moved[:, lower, 1] - _POINTS[upper, 1] - moved[:, upper, 1]
-        moved[:, upper, 1] += closed * (gap - 1.0) - np.minimum(gap - 1.0, 0) * (1 - closed)
+        moved[:, upper, 1] += closed * (gap - 1.0) + (1 - closed) * np.minimum(gap - 1.0, 0)
     for point, down in _JAW:
         moved[:, point, 1] += down * loudness
     still = figure.head(_POINTS, angles)[..., :2]

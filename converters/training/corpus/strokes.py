@@ -9,19 +9,19 @@ from . import lexicon
 # Of each shape the way from the rest to where it is prepared and to where the stroke ends, in units
 # of pose/normalize: (outward, up, forward); and how much the other hand takes part.
 SHAPES = {
-    "beat": ((10, 130, 60), (25, 55, 90), 0.25),
-    "wide": ((-20, 150, 60), (150, 165, 40), 1.0),
-    "narrow": ((10, 150, 70), (-45, 120, 90), 1.0),
-    "raise": ((10, 60, 50), (45, 220, 40), 0.6),
-    "lower": ((20, 180, 40), (45, 15, 60), 0.6),
-    "away": ((-60, 130, 60), (125, 90, 60), 0.8),
-    "count": ((-10, 190, 60), (5, 130, 100), 0.15),
-    "open": ((20, 70, 60), (100, 130, 80), 0.9),
-    "chest": ((-30, 120, 40), (-75, 185, 20), 0.3),
-    "temple": ((20, 150, 20), (30, 245, 10), 0.15),
-    "sweep": ((-75, 120, 60), (135, 110, 50), 0.35),
-    "point": ((-10, 120, 80), (60, 150, 130), 0.1),
-    "offer": ((-10, 70, 60), (20, 115, 150), 0.5),
+    "beat": ((10, 160, 75), (30, 70, 110), 0.25),
+    "wide": ((-25, 190, 75), (190, 205, 50), 1.0),
+    "narrow": ((10, 190, 90), (-55, 150, 110), 1.0),
+    "raise": ((10, 75, 60), (55, 275, 50), 0.6),
+    "lower": ((25, 225, 50), (55, 20, 75), 0.6),
+    "away": ((-75, 160, 75), (155, 110, 75), 0.8),
+    "count": ((-10, 240, 75), (5, 160, 125), 0.15),
+    "open": ((25, 90, 75), (125, 160, 100), 0.9),
+    "chest": ((-40, 150, 50), (-95, 230, 25), 0.3),
+    "temple": ((25, 190, 25), (40, 305, 10), 0.15),
+    "sweep": ((-95, 150, 75), (170, 140, 60), 0.35),
+    "point": ((-10, 150, 100), (75, 190, 160), 0.1),
+    "offer": ((-10, 90, 75), (25, 145, 190), 0.5),
 }
 # Seconds at velocity 1.
 _PREPARE, _STROKE, _RETRACT, _HOLD = 0.30, 0.34, 0.75, 0.30
@@ -46,7 +46,7 @@ def prominence(word, accent, emphasis=False):
 
 def threshold(style):
     """The least prominence that gets a stroke."""
-    return 0.80 - 0.45 * style.frequency
+    return 0.78 - 0.48 * style.frequency
 
 
 def plan(words, accents, style, rng):

@@ -62,7 +62,7 @@ class Voice:
     pause: float  # factor on pauses
 
 
-_LANGUAGES = ("en-us", "en-gb", "en-gb-scotland", "en-gb-x-rp", "en-gb-x-gbclan",
+_LANGUAGES = ("en-us", "en", "en-gb-scotland", "en-gb-x-rp", "en-gb-x-gbclan",
               "en-gb-x-gbcwmd", "en-us-nyc", "en-029")
 # Voices of the unseen are nobody else's.
 _VARIANTS = {False: ("m1", "m2", "m3", "m4", "m6", "m7", "f1", "f2", "f3", "f4", "Alex", "Andy",
@@ -72,8 +72,9 @@ _VARIANTS = {False: ("m1", "m2", "m3", "m4", "m6", "m7", "f1", "f2", "f3", "f4",
 
 def draw_voices(count, rng, unseen):
     variants = _VARIANTS[unseen]
-    order = rng.permutation(count)
-    return [Voice(f"{_LANGUAGES[rng.integers(len(_LANGUAGES))]}+{variants[order[n] % len(variants)]}",
+    order = [variants[n] for _ in range(-(-count // len(variants)))
+             for n in rng.permutation(len(variants))]
+    return [Voice(f"{_LANGUAGES[rng.integers(len(_LANGUAGES))]}+{order[n]}",
                   int(rng.integers(135, 186)), int(rng.integers(30, 71)),
                   int(rng.integers(45, 91)), round(float(rng.uniform(-6, 0)), 2),
                   round(float(rng.uniform(-70, -52)), 2), round(float(rng.uniform(0.7, 1.5)), 3))
