@@ -8,7 +8,10 @@ import shlex
 import subprocess
 import sys
 
+import numpy as np
+
 from ..errors import ConvertError
+from . import engine
 
 CONFIGS = pathlib.Path(__file__).resolve().parent / "configs"
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -24,9 +27,11 @@ MODELS = (
     ("classifier", "demo_classifier", 3, {}),
 )
 _FRONT_END = (("bert", "demo_bert", 6), ("acts", "demo_acts", 2))
-_HOURS, _SMOKE_HOURS = 2.0, 0.03
+_HOURS = 2.4
+# Does it all fit together?  Nobody learns to gesture in three seconds.
+_SMOKE_CORPUS = ("--hours", 0.01, "--speakers", 2, "--unseen", 1, "--texts", 400)
 _SMOKE_MINUTES = 0.05
-_SMOKE_MODELS = ("zs_mstm1",)
+_SMOKE_MODELS = ("zs_mstm1", "model2")
 
 
 def add(commands):
@@ -38,7 +43,8 @@ def add(commands):
     demo.add_argument("--hours", type=float, help=f"of speech (default {_HOURS})")
     demo.add_argument("--models", help="names, separated by commas (default: all)")
     demo.add_argument("--smoke", action="store_true",
-                      help="a minute of speech and seconds of training: does it all fit together?")
+                      help="minutes of speech and seconds of training, then motion of a held-out "
+                           "recording: does it all fit together?")
     demo.add_argument("--resume", action="store_true",
                       help="keep what is there: corpus, features, finished trainings")
     demo.set_defaults(run=_demo)
@@ -52,6 +58,8 @@ def _demo(options):
     for name, configuration, minutes, pretrained in recipe.models:
         recipe.train(name, configuration, minutes, recipe.folder / "data", pretrained)
     recipe.bundle()
+    if options.smoke:
+        recipe.held_out()
 
 
 class Recipe:
@@ -67,9 +75,10 @@ class Recipe:
         self.folder.mkdir(parents=True, exist_ok=True)
 
     def corpus(self):
-        hours = self.options.hours or (_SMOKE_HOURS if self.options.smoke else _HOURS)
+        size = (_SMOKE_CORPUS if self.options.smoke
+                else ("--hours", self.options.hours or _HOURS))
         self._step("corpus/index.json", "corpus", "-o", self.folder / "corpus", "--seed",
-                   self.options.seed, "--hours", hours)
+                   self.options.seed, *size, "--infer-cli", self.options.infer_cli)
 
     def front_end(self):
         for name, configuration, minutes in _FRONT_END:
@@ -99,6 +108,24 @@ class Recipe:
             parts.append(f"discriminator={self.folder / 'zs_mstm1' / 'discriminator.fb'}")
         self._step(None, "bundle", *parts, self.folder / "front_end.fb", "-o",
                    self.folder / "demo.fb", module="converters")
+
+    def held_out(self):
+        """Motion of a recording that no training saw, in the style of who speaks."""
+        recording = sorted((self.folder / "corpus").glob("unseen*/*"))[0]
+        arrays, _ = engine.arrays_of(self.options.infer_cli, [
+            self.folder / "demo.fb", recording / "speech.wav", recording / "words.json",
+            "--style", self._style(recording), "--network", self.models[0][0]])
+        pose = arrays["pose"]
+        if not (np.isfinite(pose).all() and pose.std(0).max() > 0):
+            raise ConvertError(f"{recording}: {pose.shape} poses that do not move")
+        print(f"{recording}: {len(pose)} frames of motion")
+
+    def _style(self, recording):
+        with np.load(self.folder / "data" / recording.parent.name / f"{recording.name}.npz") as file:
+            clip = {f"style_{name}": file[name] for name in ("speech", "text", "pose")}
+        path = self.folder / "clip.npz"
+        np.savez(path, **clip)
+        return path
 
     def _step(self, made, *arguments, module="converters.training"):
         """Runs a command, unless what it makes is there and may be kept."""
