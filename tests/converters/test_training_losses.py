@@ -6,7 +6,8 @@ import pytest
 torch = pytest.importorskip("torch")
 
 # pylint: disable=wrong-import-position
-from converters.training import faces, losses, schedules, statistics  # noqa: E402
+from converters.reference.blocks import sinusoidal_positions  # noqa: E402
+from converters.training import faces, losses, schedules, starts, statistics  # noqa: E402
 
 RNG = np.random.default_rng(7)
 
@@ -129,3 +130,26 @@ def test_corruption_leaves_what_is_no_level():
     changed = (got != tokens)[:, 1:4].mean()
     assert 0.3 < changed < 0.5 and got.min() == 0 and got.max() <= 52
     np.testing.assert_array_equal(faces.corrupted(tokens, channels, 0.0, RNG), tokens)
+
+
+def test_heads_start_by_looking_back():
+    attention = torch.nn.MultiheadAttention(128, 4)
+    offsets = [0, 1, 6, 12]
+    starts.look_back(attention, offsets)
+    x = sinusoidal_positions(64, 128).float()[:, None]
+    with torch.no_grad():
+        weights = attention(x, x, x, average_attn_weights=False)[1][0]
+    for head, offset in enumerate(offsets):
+        rows = torch.arange(offset, 64)
+        assert torch.equal(weights[head, offset:].argmax(1), rows - offset)
+
+
+def test_content_starts_by_looking_at_itself():
+    attention = torch.nn.MultiheadAttention(128, 4)
+    torch.manual_seed(1)
+    starts.attend_to_yourself(attention)
+    x = 0.5 * torch.randn(64, 1, 128)
+    with torch.no_grad():
+        out, weights = attention(x, x, x)
+    assert torch.equal(weights[0].argmax(1), torch.arange(64))
+    assert torch.nn.functional.cosine_similarity(out[:, 0], x[:, 0]).mean() > 0.8
