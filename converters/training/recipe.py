@@ -3,8 +3,10 @@
 corpus -> front end (BERT and dialog acts) -> features by the engine -> every model -> one bundle.
 """
 
+import json
 import pathlib
 import shlex
+import shutil
 import subprocess
 import sys
 
@@ -12,6 +14,7 @@ import numpy as np
 
 from ..errors import ConvertError
 from . import engine
+from .evidence.material import Material
 
 CONFIGS = pathlib.Path(__file__).resolve().parent / "configs"
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -58,6 +61,7 @@ def _demo(options):
     for name, configuration, minutes, pretrained in recipe.models:
         recipe.train(name, configuration, minutes, recipe.folder / "data", pretrained)
     recipe.bundle()
+    recipe.styles()
     if options.smoke:
         recipe.held_out()
 
@@ -100,32 +104,41 @@ class Recipe:
                    *(f"--pretrained={key}={self.folder / run}" for key, run in pretrained.items()))
 
     def bundle(self):
-        """Everything in one file, with ZS-MSTM 1.0's discriminator; autoencoders are parts of
-        Model 1."""
+        """Everything in one file, with ZS-MSTM 1.0's discriminator, in bf16; autoencoders are parts
+        of Model 1."""
         names = [name for name, *_ in self.models if not name.startswith("ae_")]
         parts = [f"{name}={self.folder / name / 'weights.fb'}" for name in names]
         if "zs_mstm1" in names:
             parts.append(f"discriminator={self.folder / 'zs_mstm1' / 'discriminator.fb'}")
-        self._step(None, "bundle", *parts, self.folder / "front_end.fb", "-o",
-                   self.folder / "demo.fb", module="converters")
+        whole = self.folder / "demo-float32.fb"
+        self._step(None, "bundle", *parts, self.folder / "front_end.fb", "-o", whole,
+                   module="converters")
+        self._step(None, "quantise", whole, "--to", "bf16", "-o", self.folder / "demo.fb",
+                   "--infer-cli", self.options.infer_cli, module="converters")
+
+    def styles(self):
+        """Of the liveliest and of the calmest speaker, for the demo."""
+        if "zs_mstm1" not in [name for name, *_ in self.models]:
+            return
+        found = Material(self.folder / "corpus", self.folder / "data", self.folder / "demo.fb",
+                         self.options.infer_cli, self.folder / "work")
+        known = json.loads((self.folder / "corpus" / "index.json").read_text())["speakers"]
+        order = sorted(found.data.speakers("train"), key=lambda name: liveliness(
+            known[name]["style"]))
+        for name, speaker in (("calm", order[0]), ("lively", order[-1])):
+            shutil.copyfile(found.style(speaker, "zs_mstm1"), self.folder / f"{name}.style")
+            print(f"{self.folder / name}.style: of {speaker}")
 
     def held_out(self):
-        """Motion of a recording that no training saw, in the style of who speaks."""
+        """Motion of a recording that no training saw."""
         recording = sorted((self.folder / "corpus").glob("unseen*/*"))[0]
         arrays, _ = engine.arrays_of(self.options.infer_cli, [
             self.folder / "demo.fb", recording / "speech.wav", recording / "words.json",
-            "--style", self._style(recording), "--network", self.models[0][0]])
+            "--style", self.folder / "lively.style", "--network", "zs_mstm1"])
         pose = arrays["pose"]
         if not (np.isfinite(pose).all() and pose.std(0).max() > 0):
             raise ConvertError(f"{recording}: {pose.shape} poses that do not move")
         print(f"{recording}: {len(pose)} frames of motion")
-
-    def _style(self, recording):
-        with np.load(self.folder / "data" / recording.parent.name / f"{recording.name}.npz") as file:
-            clip = {f"style_{name}": file[name] for name in ("speech", "text", "pose")}
-        path = self.folder / "clip.npz"
-        np.savez(path, **clip)
-        return path
 
     def _step(self, made, *arguments, module="converters.training"):
         """Runs a command, unless what it makes is there and may be kept."""
@@ -135,3 +148,8 @@ class Recipe:
         print("==> " + shlex.join(["python3", *command[1:]]), file=sys.stderr, flush=True)
         if subprocess.run(command, cwd=ROOT, check=False).returncode != 0:
             raise ConvertError(f"python3 -m {module} {arguments[0]}: failed, see above")
+
+
+def liveliness(style):
+    """How much a speaker of the corpus moves: size of strokes times how often there is one."""
+    return style["amplitude"] * (0.3 + style["frequency"]) * (2 - abs(style["arms"]))
