@@ -152,4 +152,4 @@ class Recipe:
 
 def liveliness(style):
     """How much a speaker of the corpus moves: size of strokes times how often there is one."""
-    return style["amplitude"] * (0.3 + style["frequency"]) * (2 - abs(style["arms"]))
+    return style["amplitude"] ** 2 * (0.3 + style["frequency"]) * (2 - abs(style["arms"]))
