@@ -6,10 +6,13 @@ import sys
 
 from ..errors import ConvertError
 from . import commands as training
+from . import recipe
 from .corpus import command as corpus
 from .data import command as prepare
+from .evidence import command as evidence
 
-PARTS = (corpus, prepare, training)  # modules with add(commands); the options of a command have .run(options)
+# Modules with add(commands); the options of a command have .run(options).
+PARTS = (corpus, prepare, training, evidence, recipe)
 
 
 def main(arguments=None):

@@ -19,12 +19,7 @@ def logits(network, f0, text, tokens, drop=0.0):
 
 def h_att(network, f0, text, drop=0.0):
     """(B, rows, attention_width)."""
-    x = network.f0_encoder["embedding"](network.f0_ids(f0).flatten(0, 1))
-    x = F.dropout(_with_positions(_convolve(network.f0_encoder["conv"], x)), drop)
-    for layer in network.encoder["layers"]:
-        x = layer.norm1(x + F.dropout(_attend(layer.self_attn, x, x), drop))
-        x = layer.norm2(x + F.dropout(layer.linear2(F.relu(layer.linear1(x))), drop))
-    speech = x.reshape(len(f0), -1, x.shape[2])  # the values of all words behind one another
+    speech = _speech(network, f0, drop)
     text = network.text.apply(text)
     cross = network.cross
     if cross.master == "Speech":
@@ -33,18 +28,56 @@ def h_att(network, f0, text, drop=0.0):
     return x if cross.output is None else text + cross.output(x)
 
 
+def _speech(network, f0, drop):
+    """X_speech of all words, their values behind one another: (B, W * L, d).  Words without voice,
+    with which windows are filled up, are all alike, so one of them is encoded for all."""
+    words = network.f0_ids(f0).flatten(0, 1)
+    voiced = (words > 0).any(1)
+    x = torch.cat([words[voiced], torch.zeros_like(words[:1])])
+    x = network.f0_encoder["embedding"](x)
+    x = F.dropout(_with_positions(_convolve(network.f0_encoder["conv"], x)), drop)
+    for layer in network.encoder["layers"]:
+        x = layer.norm1(x + F.dropout(_attend(layer.self_attn, x, x), drop))
+        x = layer.norm2(x + F.dropout(layer.linear2(F.relu(layer.linear1(x))), drop))
+    place = torch.where(voiced, voiced.cumsum(0) - 1, len(x) - 1)
+    return x[place].reshape(len(f0), -1, x.shape[2])
+
+
 def newest_rows(convolutions, x):
     """(B, t, columns) -> (B, t, d): row i as the last of the prefix 0..i, which is zero-padded at
     both ends at every layer.  It needs the few rows before i, so each row gets them as a window."""
-    batch, steps, columns = x.shape
+    batch, steps, _ = x.shape
+    first, *others = convolutions
     before = sum(layer.kernel_size[0] // 2 for layer in convolutions)
-    rows = F.pad(x, (0, 0, before, 0)).unfold(1, before + 1, 1)  # (B, t, columns, before + 1)
+    # What the first layer does with each row is the same in all windows.
+    rows = F.pad(_products(first, x), (0, 0, 0, 0, before, 0)).unfold(1, before + 1, 1)
+    rows = rows.reshape(batch * steps, *rows.shape[2:]).permute(0, 3, 1, 2)
     exists = torch.arange(steps)[:, None] + torch.arange(before + 1) >= before
-    exists = exists.repeat(batch, 1)[:, None].to(x)
-    rows = rows.reshape(batch * steps, columns, -1)
-    for layer in convolutions:
-        rows = F.relu(layer(rows)) * exists
-    return rows[:, :, -1].reshape(batch, steps, -1)
+    exists = exists.repeat(batch, 1)[:, :, None].to(x)
+    rows = F.relu(_sum(first, rows)) * exists
+    for layer in others:
+        rows = F.relu(_sum(layer, _products(layer, rows))) * exists
+    return rows[:, -1].reshape(batch, steps, -1)
+
+
+def _products(layer, x):
+    """Of every row with each column of the kernel: (..., columns) -> (..., kernel, d)."""
+    weight = layer.weight.permute(1, 2, 0)  # (columns, kernel, d)
+    found = x.reshape(-1, x.shape[-1]) @ weight.flatten(1)
+    return found.reshape(*x.shape[:-1], *weight.shape[1:])
+
+
+def _sum(layer, products):
+    """'same' convolution of their products: (N, rows, kernel, d) -> (N, rows, d)."""
+    radius = layer.kernel_size[0] // 2
+    return layer.bias + sum(_moved(x, n - radius) for n, x in enumerate(products.unbind(2)))
+
+
+def _moved(x, rows):
+    """Row i becomes row i + `rows` of x (N, rows, d), zero where there is none."""
+    if rows < 0:
+        return F.pad(x[:, :rows], (0, 0, -rows, 0))
+    return F.pad(x[:, rows:], (0, 0, 0, rows))
 
 
 def _stack(stack, tokens, memory, drop):

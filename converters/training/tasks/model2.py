@@ -34,7 +34,9 @@ class Task(BaseTask):
     def losses(self, chosen, rng, _step):
         c = self.network["config"]
         f0, text, found = sampling.take_windows(self.data, chosen, c["max_words"])
-        tokens = faces.tokens_of(found, c["channels"], c["max_out"])
+        # Steps behind the longest sequence of the batch teach nothing.
+        steps = min(c["max_out"], 1 + max(map(len, found)))
+        tokens = faces.tokens_of(found, c["channels"], steps)
         given = faces.before(tokens)
         if self.o["token_noise"]:
             given = faces.corrupted(given, c["channels"], self.o["token_noise"], rng)

@@ -6,7 +6,7 @@ from ... import networks
 from ...kinds import zs_mstm1
 from ...reference import run as reference
 from ...reference.ast import Ast
-from .. import losses, schedules, statistics
+from .. import losses, schedules, starts, statistics
 from ..batched import ast, small, zs_mstm
 from ..data import sampling
 from ..optimiser import Optimiser
@@ -73,6 +73,11 @@ class Task(BaseTask):
                 module.p = self.o["dropout"]
             elif isinstance(module, torch.nn.TransformerDecoderLayer):
                 module.self_attn.dropout = module.multihead_attn.dropout = self.o["dropout"]
+        starts.attend_to_yourself(self.module.encoders.content_attention)
+        for generator, _ in zs_mstm.generators(self.module).values():
+            if generator.c["positions"] == "Sinusoidal":
+                for n, layer in enumerate(generator.decoder.layers):
+                    starts.look_back(layer.self_attn, starts.offsets(n, layer.self_attn.num_heads))
 
     def _add_discriminator(self):
         core = self.core
