@@ -6,9 +6,6 @@ from .. import engine
 from ..data import sampling
 from . import material
 
-_EMPTY = 0.0
-
-
 def evidence(found, name, weights, network, split="test", without=()):
     """Figures of one network: of each channel, and the means over action units and angles.
     `without`: "f0" or "text", which is zero for the ablations that were trained without it."""
@@ -35,7 +32,7 @@ def evidence(found, name, weights, network, split="test", without=()):
 
 
 def _decode(found, weights, network, arrays, without):
-    arrays = {name: _EMPTY * x if name in without else x for name, x in arrays.items()}
+    arrays = {name: np.zeros_like(x) if name in without else x for name, x in arrays.items()}
     arrays = {name: x.reshape(-1, x.shape[2]) for name, x in arrays.items()}
     path = found.work / "face-input.npz"
     np.savez(path, **arrays)

@@ -31,6 +31,7 @@ class Task(BaseTask):
         "discriminator": {},    # fields of DiscriminatorConfig
         "dropout": 0.1,         # of the decoder, PyTorch's default
         "teacher_noise": 0.0,   # deviation of what is added to the poses that teach the decoder
+        "looking_start": False,  # attention starts as starts.py has it, not as PyTorch draws it
     }
 
     def __init__(self, configuration, data, device):
@@ -39,7 +40,7 @@ class Task(BaseTask):
         core = self.core = self.core_of(self.network["config"])
         self.window = core["frames"] * core["context_segments"]
         self.items = sampling.segments(data.select("train"), self.window)
-        self._dev = sampling.segments(data.select("dev"), self.window)
+        self._dev, self._speakers = sampling.segments(data.select("dev"), self.window), {}
         self.joints = [n for n, joint in enumerate(self.network.get("joints", []))
                        if joint["source"] in _WRISTS] or list(range(core["d_pose"] // 2))
         self._add_discriminator()
@@ -73,6 +74,10 @@ class Task(BaseTask):
                 module.p = self.o["dropout"]
             elif isinstance(module, torch.nn.TransformerDecoderLayer):
                 module.self_attn.dropout = module.multihead_attn.dropout = self.o["dropout"]
+        if self.o["looking_start"]:
+            self._start_looking()
+
+    def _start_looking(self):
         starts.attend_to_yourself(self.module.encoders.content_attention)
         for generator, _ in zs_mstm.generators(self.module).values():
             if generator.c["positions"] == "Sinusoidal":
@@ -116,8 +121,6 @@ class Task(BaseTask):
         return [(others[i], int(rng.integers(others[i].frames - frames + 1))) for i in chosen]
 
     def _of_speaker(self, utterance):
-        if not hasattr(self, "_speakers"):
-            self._speakers = {}
         key = utterance.split, utterance.speaker
         if key not in self._speakers:
             self._speakers[key] = self.data.select(*key)
