@@ -17,7 +17,6 @@ from converters.random_weights import random_weights
 from converters.training import __main__ as cli, engine
 from converters.training.corpus import recordings as corpus
 from converters.training.data import layout, pats, recordings
-from converters.training.data.dataset import Dataset
 from converters.training.data.prepare import prepare
 
 ROOT = pathlib.Path(__file__).parents[2]
@@ -208,6 +207,15 @@ def test_folders_that_are_refused(tmp_path, files, message):
     for name in files:
         (folder / name).write_text("")
     with pytest.raises(ConvertError, match=message):
+        recordings.find(tmp_path, 0)
+
+
+def test_names_that_are_refused(tmp_path):
+    folder = tmp_path / "anna" / "my talk"
+    folder.mkdir(parents=True)
+    for name in ("a.wav", "a.json", "a.csv"):
+        (folder / name).write_text("")
+    with pytest.raises(ConvertError, match="'my talk', expected a name of letters, digits"):
         recordings.find(tmp_path, 0)
 
 
