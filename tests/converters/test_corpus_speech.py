@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from converters.kinds.bert import DIALOG_ACTS
-from converters.training.corpus import espeak, grammar, lexicon, recordings, speech, style, texts
+from converters.training.corpus import (espeak, grammar, lexicon, prosody, recordings, speech, style,
+                                        texts)
 
 try:
     ctypes.CDLL(espeak.LIBRARY)
@@ -154,3 +155,27 @@ def test_an_unknown_voice_is_one_line():
     from converters.errors import ConvertError
     with pytest.raises(ConvertError, match="espeak-ng: no voice xx"):
         read(1, style.Voice("xx", 160, 50, 50, 0, -60, 1))
+
+
+def test_accents_are_high_and_loud_words():
+    f0, level = np.full(300, 100.0), np.full(300, 0.8)
+    f0[100:150] = 100 * 2 ** (5 / 12)  # five semitones
+    f0[200:250], level[250:300] = 0, 1.05  # unvoiced; louder
+    words = [(0.0, 0.5), (1.0, 1.5), (2.0, 2.5), (2.5, 3.0)]
+    heard = prosody.hear(f0, level, words, [(0.0, 3.0)])
+    np.testing.assert_allclose(heard.accent, [0, 0.7, 0, 0.3], atol=0.02)
+    assert heard.contour[125] == pytest.approx(5) and heard.contour[50] == pytest.approx(0)
+
+
+def test_units_end_at_pauses_of_more_than_a_fifth_of_a_second():
+    words = [(0.0, 1.0), (1.2, 2.0), (2.21, 3.0)]
+    assert prosody.units_of(words) == [(0.0, 2.0), (2.21, 3.0)]
+
+
+def test_loudness_is_decibels():
+    rng = np.random.default_rng(0)
+    noise = rng.normal(size=16000)
+    noise[8000:] *= 0.1  # 20 dB less
+    level = prosody.loudness(noise, 16000)
+    assert level[10:40].mean() == pytest.approx(0.98, abs=0.05)
+    assert level[60:].mean() == pytest.approx(0.48, abs=0.05)

@@ -17,7 +17,6 @@ from converters.random_weights import random_weights
 from converters.training import __main__ as cli, engine
 from converters.training.corpus import recordings as corpus
 from converters.training.data import layout, pats, recordings
-from converters.training.data.dataset import Dataset
 from converters.training.data.prepare import prepare
 
 ROOT = pathlib.Path(__file__).parents[2]
@@ -143,6 +142,18 @@ def test_a_folder_of_people(tmp_path, front_end):
 
 
 @needs_cli
+def test_what_the_engine_says_of_a_recording_is_said(tmp_path, front_end):
+    person(tmp_path / "in" / "anna")
+    (tmp_path / "in" / "anna" / "talk.csv").write_text("frame, timestamp, AU01_r\n1, 0.0, 1.0\n")
+    with pytest.raises(ConvertError, match="OpenFace: no column AU02_r, expected AU01_r, AU02_r"):
+        prepare(options(tmp_path / "in", tmp_path / "out", front_end))
+    (tmp_path / "in" / "anna" / "talk.wav").write_bytes(b"no sound")
+    with pytest.raises(ConvertError, match="talk.wav"):
+        prepare(options(tmp_path / "in", tmp_path / "out", front_end))
+    assert not (tmp_path / "out" / "dataset.json").exists()
+
+
+@needs_cli
 @pytest.mark.skipif(shutil.which("espeak-ng") is None, reason="needs Debian's espeak-ng")
 def test_the_corpus_from_end_to_end(tmp_path, front_end):
     plan = corpus.Plan(seed=3, hours=0.001, speakers=1, unseen=1, texts=50, fewest=3, words=(8, 9))
@@ -196,6 +207,15 @@ def test_folders_that_are_refused(tmp_path, files, message):
     for name in files:
         (folder / name).write_text("")
     with pytest.raises(ConvertError, match=message):
+        recordings.find(tmp_path, 0)
+
+
+def test_names_that_are_refused(tmp_path):
+    folder = tmp_path / "anna" / "my talk"
+    folder.mkdir(parents=True)
+    for name in ("a.wav", "a.json", "a.csv"):
+        (folder / name).write_text("")
+    with pytest.raises(ConvertError, match="'my talk', expected a name of letters, digits"):
         recordings.find(tmp_path, 0)
 
 

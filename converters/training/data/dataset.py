@@ -8,7 +8,6 @@
 import collections
 import dataclasses
 import pathlib
-import re
 import zipfile
 
 import numpy as np
@@ -19,7 +18,6 @@ from . import layout
 
 # What is read once stays in memory up to this: three hours of the corpus are 0.3 GB.
 CACHE_BYTES = 1 << 30
-_NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,120}")
 
 
 @dataclasses.dataclass(frozen=True)
@@ -170,7 +168,7 @@ def _utterance(path, number, entry):
     if not isinstance(entry, dict):
         raise ConvertError(f"{where}: expected an object")
     for name in ("id", "speaker"):
-        if not isinstance(entry.get(name), str) or not _NAME.fullmatch(entry[name]):
+        if not isinstance(entry.get(name), str) or not layout.NAME.fullmatch(entry[name]):
             raise ConvertError(f"{where}: {name}: {str(entry.get(name))[:40]!r}, expected letters, "
                                "digits, . _ and -")
     if entry.get("split") not in layout.SPLITS:

@@ -4,7 +4,10 @@ data/dataset.json     version, rates, widths, the arrays that every utterance ha
 data/SPEAKER/ID.npz   the arrays
 """
 
+import re
+
 VERSION = 1
+NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,120}")  # of speakers and utterances
 FRAME_RATE = 15.0  # of speech, text, pose, face and tags
 FACE_RATE = 24.0  # of au, as infer-cli takes tokens of faces to be placed
 SPLITS = ("train", "dev", "test", "unseen")

@@ -1,11 +1,7 @@
 """Recordings to a prepared data set (layout.py)."""
 
 import concurrent.futures
-import json
-import pathlib
 import tempfile
-
-import numpy as np
 
 from ... import pats as pats_arrays
 from ...errors import ConvertError

@@ -118,6 +118,10 @@ def _audio(path):
 
 
 def _recording(path, name, speaker, split):
+    for part in (speaker, name):
+        if not layout.NAME.fullmatch(part):
+            raise ConvertError(f"{path}: {part[:80]!r}, expected a name of letters, digits, "
+                               "'.', '_' and '-'")
     files = sorted(x for x in path.iterdir() if x.is_file())
     audio = _one(path, [x for x in files if x.suffix.lower() in _AUDIO], "recording of speech")
     frames = [x for x in files if x.name.endswith("_keypoints.json")]
