@@ -19,7 +19,9 @@ def add(commands):
     parser.add_argument("--transfer", action="append", default=[], metavar="NETWORK",
                         help="a ZS-MSTM of the bundle")
     parser.add_argument("--sources", type=int, default=2,
-                        help="speakers who are heard for each style (default %(default)s)")
+                        help="speakers who are heard for each seen style (default %(default)s)")
+    parser.add_argument("--unseen", type=int, default=8,
+                        help="and for each unseen one (default %(default)s)")
     parser.add_argument("--face", action="append", default=[], metavar="NAME=WEIGHTS.fb[:WITHOUT]",
                         help="a Model 1 or 2; WITHOUT: f0 or text, taken away in training")
     parser.add_argument("--probe", action="append", default=[], metavar="NAME=RUN",
@@ -40,8 +42,8 @@ def _run(options):
     for network in options.transfer:
         from . import transfer
         figures["transfer"][network] = {
-            condition: transfer.evidence(found, network, condition, options.sources)
-            for condition in ("seen", "unseen")}
+            condition: transfer.evidence(found, network, condition, sources)
+            for condition, sources in (("seen", options.sources), ("unseen", options.unseen))}
     for text in options.face:
         from . import face
         name, weights = _named(text, "--face")
