@@ -4,6 +4,7 @@ be is one line."""
 import csv
 import json
 import pathlib
+import subprocess
 
 import numpy as np
 import pytest
@@ -15,7 +16,9 @@ from converters.training.__main__ import main
 
 torch = pytest.importorskip("torch")
 
-CONFIGS = pathlib.Path(__file__).resolve().parents[2] / "converters" / "training" / "configs"
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+CONFIGS = ROOT / "converters" / "training" / "configs"
+CLI = ROOT / "build" / "release" / "bin" / "infer-cli"
 
 
 @pytest.fixture(name="data", scope="module")
@@ -80,6 +83,24 @@ def same(a, b):
     if isinstance(a, list):
         return len(a) == len(b) and all(map(same, a, b))
     return torch.equal(a, b) if isinstance(a, torch.Tensor) else a == b
+
+
+@pytest.mark.skipif(not CLI.is_file(), reason="infer-cli is not built")
+@pytest.mark.parametrize("kind", ["zs_mstm1", "zs_mstm2", "model1", "model2", "acts"])
+def test_the_engine_computes_what_was_trained(train, kind):
+    """`infer-cli check` runs the self-test that the export wrote with PyTorch."""
+    _, folder, _ = train(training_data.configuration(kind, steps=3), "run")
+    done = subprocess.run([CLI, "check", folder / "weights.fb"], capture_output=True, text=True,
+                          check=False)
+    assert done.returncode == 0, done.stderr
+
+
+@pytest.mark.parametrize("kind", ["zs_mstm1", "zs_mstm2"])
+def test_the_probe_asks_a_run_for_its_style(train, data, kind):
+    from converters.training.evidence import probe
+    _, folder, _ = train(training_data.configuration(kind, steps=2, dev_every=2), "run")
+    found = probe.evidence(folder, data, steps=40)
+    assert 0 < found["error"] < 10 and found["segments"] == 18
 
 
 def test_statistics_travel_with_the_weights(train, data):
