@@ -104,17 +104,14 @@ class Recipe:
                    *(f"--pretrained={key}={self.folder / run}" for key, run in pretrained.items()))
 
     def bundle(self):
-        """Everything in one file, with ZS-MSTM 1.0's discriminator, in bf16; autoencoders are parts
-        of Model 1."""
+        """Everything in one file, with ZS-MSTM 1.0's discriminator; autoencoders are parts of
+        Model 1."""
         names = [name for name, *_ in self.models if not name.startswith("ae_")]
         parts = [f"{name}={self.folder / name / 'weights.fb'}" for name in names]
         if "zs_mstm1" in names:
             parts.append(f"discriminator={self.folder / 'zs_mstm1' / 'discriminator.fb'}")
-        whole = self.folder / "demo-float32.fb"
-        self._step(None, "bundle", *parts, self.folder / "front_end.fb", "-o", whole,
-                   module="converters")
-        self._step(None, "quantise", whole, "--to", "bf16", "-o", self.folder / "demo.fb",
-                   "--infer-cli", self.options.infer_cli, module="converters")
+        self._step(None, "bundle", *parts, self.folder / "front_end.fb", "-o",
+                   self.folder / "demo.fb", module="converters")
 
     def styles(self):
         """Of the liveliest and of the calmest speaker, for the demo."""
