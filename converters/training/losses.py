@@ -3,6 +3,8 @@
 import torch
 from torch.nn import functional as F
 
+from ..channels import SPECIAL
+
 PADDING = 0  # the token behind the end of a sequence, which teaches nothing
 _EPSILON = 1e-4
 
@@ -12,11 +14,29 @@ def squares(x, y):
     return ((x - y) ** 2).mean()
 
 
-def tokens(logits, targets):
+def tokens(logits, targets, spread=0.0):
     """Sum over channels of the mean cross-entropy H(Z, Z'): eq. 5.7 and 5.17.  logits: for each
-    channel (B, t, tokens); targets (B, t, channels)."""
-    return sum(F.cross_entropy(x.flatten(0, 1), targets[:, :, n].flatten(), ignore_index=PADDING)
+    channel (B, t, tokens); targets (B, t, channels).  With a `spread`, in levels, the target of a
+    level is a bell over its neighbours, so that they learn from one another."""
+    return sum(_cross_entropy(x.flatten(0, 1), targets[:, :, n].flatten(), spread)
                for n, x in enumerate(logits))
+
+
+def _cross_entropy(logits, targets, spread):
+    if not spread:
+        return F.cross_entropy(logits, targets, ignore_index=PADDING)
+    wanted = _bells(logits.shape[1], spread).to(logits)[targets]
+    entropies = -(wanted * logits.log_softmax(1)).sum(1)
+    return entropies[targets != PADDING].mean()
+
+
+def _bells(count, spread):
+    """(tokens, tokens): the distribution that is wanted for each token."""
+    distance = torch.arange(count) - torch.arange(count)[:, None]
+    bells = torch.exp(-0.5 * (distance / spread) ** 2)
+    bells[:SPECIAL], bells[:, :SPECIAL] = 0.0, 0.0
+    bells[range(SPECIAL), range(SPECIAL)] = 1.0
+    return bells / bells.sum(1, keepdim=True)
 
 
 def fader(style, predicted, span):

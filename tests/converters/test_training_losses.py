@@ -36,6 +36,17 @@ def test_tokens_are_cross_entropies_of_the_channels_without_padding():
     assert float(got) == pytest.approx(want)
 
 
+def test_a_spread_shares_the_target_among_neighbours():
+    logits = RNG.normal(size=(1, 4, 9))
+    targets = torch.tensor([[[5], [2], [8], [0]]])
+    log_p = (logits - np.log(np.exp(logits).sum(-1, keepdims=True)))[0]
+    want = -log_p[1, 2]
+    for row, level in ((0, 5), (2, 8)):
+        bell = np.exp(-0.5 * ((np.arange(3, 9) - level) / 1.5) ** 2)
+        want -= (bell / bell.sum() * log_p[row, 3:]).sum()
+    assert float(losses.tokens([tensor(logits)], targets, 1.5)) == pytest.approx(want / 3)
+
+
 def test_fader_is_low_when_style_cannot_be_told():
     """Eq. 6.7, errors brought into 0 to 1."""
     style, told = RNG.normal(size=(2, 6, 4))

@@ -12,6 +12,7 @@ class Task(BaseTask):
         "dropout": 0.1,
         # Share of the tokens before a step that is replaced by random levels (faces.corrupted).
         "token_noise": 0.0,
+        "spread": 0.0,  # of the target over neighbouring levels, in levels (losses.tokens)
         # The ablations of 5.6.3: what is taken away of the inputs.
         "no_speech": False,
         "no_text": False,
@@ -45,4 +46,4 @@ class Task(BaseTask):
         drop = self.o["dropout"] if self.module.training else 0.0
         logits = model2.logits(self.module, self.tensor(f0), self.tensor(text),
                                self.tensor(given), drop)
-        return {"loss": losses.tokens(logits, self.tensor(tokens))}
+        return {"loss": losses.tokens(logits, self.tensor(tokens), self.o["spread"])}
