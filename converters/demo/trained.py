@@ -10,7 +10,7 @@ from .steps import RATE, ROOT, SENTENCE, SPEECH, infer_cli, shown, write_words
 WEIGHTS = ROOT / "converters" / "demo" / "weights"
 BUNDLE = WEIGHTS / "demo.fb"
 # Files beside the bundle, which they belong to: name -> what one should see.
-STYLES = {"lively": "large strokes of both arms", "calm": "few and small strokes"}
+STYLES = {"lively": "large and quick strokes", "calm": "few, small and slow ones"}
 
 
 def demo(options, out):

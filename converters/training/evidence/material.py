@@ -55,10 +55,11 @@ class Material:
         return {f"style_{name}": arrays[name] for name in ("speech", "text", "pose")}
 
     def motion(self, utterance, speaker, network):
-        """What the engine makes of an utterance in the style of a speaker."""
+        """What the engine makes of an utterance in the style of a speaker, with the borders of
+        segments faded as in the demo."""
         arrays, _ = engine.arrays_of(self.infer_cli, [
             self.weights, *self.recording(utterance), "--style", self.style(speaker, network),
-            "--network", network])
+            "--network", network, "--crossfade", "0.3"])
         return arrays["pose"]
 
     def truth(self, utterance, speaker):
