@@ -26,7 +26,7 @@ enum class Format {
   kVrm,        ///< "vrm": JSON, weights of expressions and the rotation of the head
   kVrma,       ///< "vrma": VRM Animation, binary glTF: arms, head and expressions
   kFap,        ///< "fap": MPEG-4 face animation of Greta
-  kBap,        ///< "bap": MPEG-4 body animation of Greta, the head
+  kBap,        ///< "bap": MPEG-4 body animation of Greta: head and arms
 };
 
 /// The formats' names, in the order above.
@@ -57,7 +57,8 @@ struct FormatOptions {
 ///
 /// Errors: a motion without frames, with values that are no numbers or of sizes that do not fit;
 /// one that has nothing of what the format holds (a body for kOpenPose and BVH, action units or
-/// head angles for the others, arms or any of these for kVrma); a path that cannot be written. They
+/// head angles for the others; arms, a nose or what is in the face for kVrma, arms, a nose or head
+/// angles for kBap); a path that cannot be written. They
 /// begin with the path.
 Status WriteMotion(const Motion& motion, Format format, const std::string& path,
                    const FormatOptions& options = {});
