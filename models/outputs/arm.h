@@ -9,7 +9,7 @@
 
 namespace gestus::outputs {
 
-/// In the rest pose the arm hangs, the inside of the elbow to the front: MPEG-4's and Greta's.  Axes
+/// In the rest pose the arm hangs, the inside of the elbow to the front: MPEG-4's and Greta's. Axes
 /// as in BVH: x the figure's left, y up, z forwards.
 class Arm {
  public:

@@ -19,8 +19,9 @@ namespace {
 constexpr int kBaps = 295;
 constexpr double kUnit = 1e5;  // BAPs are radians x 100000
 
-// Of vertebra C3, and of the left arm; those of the right one are the next ones.  A joint of Greta's
-// is turned by about z (roll, abduct) * about y (torsion, twisting) * about x (tilt, flexion).
+// Of vertebra C3, and of the left arm; those of the right one are the next ones.  A joint of
+// Greta's is turned by about z (roll, abduct) * about y (torsion, twisting) * about x (tilt,
+// flexion).
 constexpr std::size_t kNeckRoll = 57, kNeckTorsion = 58, kNeckTilt = 59;
 constexpr std::size_t kShoulderFlexion = 32, kShoulderAbduct = 34, kShoulderTwisting = 36;
 constexpr std::size_t kElbowFlexion = 38;
@@ -36,7 +37,6 @@ struct Limbs {
   std::array<bool, kLimbs> has = {};
   motion::Track spans;  // (frames, x of all limbs, y, z), cm
 
-  bool Any() const { return has[kUpperArm] || has[kUpperArm + kRight] || has[kNeck]; }
   Vector3 At(std::int64_t frame, std::size_t limb) const {
     const auto i = static_cast<std::int64_t>(limb);
     return {spans.value(frame, 0, i), spans.value(frame, 1, i), spans.value(frame, 2, i)};
@@ -110,7 +110,6 @@ Status WriteBap(const Motion& motion, const std::string& path, const FormatOptio
     if (!found.ok()) return found.status();
     limbs = *std::move(found);
   }
-  if (!has_head && !limbs.Any()) return Lacks("head angles, no arms and no nose", Format::kBap);
   Motion curves;
   if (has_head) {
     Result<Motion> resampled = CurvesAtGretasRate(motion);

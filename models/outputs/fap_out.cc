@@ -39,6 +39,11 @@ constexpr std::array<Pull, 15> kPulls = {{{1, 31, 200},
 
 }  // namespace
 
+bool HasFap(const FaceCurves& face) {
+  return std::any_of(kPulls.begin(), kPulls.end(),
+                     [&](const Pull& pull) { return face.HasUnit(pull.unit); });
+}
+
 Status WriteFap(const Motion& motion, const std::string& path, const FormatOptions& options) {
   const FaceCurves given(motion);
   std::vector<bool> used(kFaps + 1);
@@ -46,8 +51,6 @@ Status WriteFap(const Motion& motion, const std::string& path, const FormatOptio
     if (!given.HasUnit(pull.unit)) continue;
     used[static_cast<std::size_t>(pull.fap)] = used[static_cast<std::size_t>(pull.fap) + 1] = true;
   }
-  if (std::find(used.begin(), used.end(), true) == used.end())
-    return Lacks("action units of brows, lids or cheeks", Format::kFap);
   const Result<Motion> resampled = CurvesAtGretasRate(motion);
   if (!resampled.ok()) return resampled.status();
   const FaceCurves face(*resampled);

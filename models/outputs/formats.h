@@ -52,14 +52,17 @@ struct FormatOptions {
   std::string name = {};
 };
 
+/// An error unless `motion` has what `format` holds: a body for kOpenPose and BVH; action units or
+/// head angles for kOpenFace, kArkit and kVrm, and arms or a nose will do too for kVrma; action
+/// units of brows, lids or cheeks for kFap; head angles, arms or a nose for kBap; anything for
+/// kCsv. Only names are looked at, so a motion without frames is judged as well.
+Status Suits(const Motion& motion, Format format);
+
 /// Writes `motion` to `path`, completely or not at all.  An older file is replaced, and so is a
 /// folder that holds nothing but OpenPose's files.
 ///
 /// Errors: a motion without frames, with values that are no numbers or of sizes that do not fit;
-/// one that has nothing of what the format holds (a body for kOpenPose and BVH, action units or
-/// head angles for the others; arms, a nose or what is in the face for kVrma, arms, a nose or head
-/// angles for kBap); a path that cannot be written. They
-/// begin with the path.
+/// one that does not suit the format; a path that cannot be written. They begin with the path.
 Status WriteMotion(const Motion& motion, Format format, const std::string& path,
                    const FormatOptions& options = {});
 

@@ -76,8 +76,7 @@ std::array<double, 3> AnglesZxy(const Quaternion& q, const std::array<double, 3>
 std::array<double, 3> AnglesXyz(const Vector3& x, const Vector3& y, const Vector3& z) {
   // The vectors are the columns of Rz Ry Rx, whose last row is (-sin y, cos y sin x, cos y cos x).
   const double about_y = std::asin(std::clamp(-x.z, -1.0, 1.0));
-  if (std::fabs(x.z) < 1 - 1e-12)
-    return {std::atan2(y.z, z.z), about_y, std::atan2(x.y, x.x)};
+  if (std::fabs(x.z) < 1 - 1e-12) return {std::atan2(y.z, z.z), about_y, std::atan2(x.y, x.x)};
   // Only the difference or the sum of x and z is given.
   return {x.z < 0 ? std::atan2(y.x, y.y) : std::atan2(-y.x, y.y), about_y, 0};
 }

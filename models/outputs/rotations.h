@@ -33,8 +33,8 @@ Quaternion Between(const Vector3& from, const Vector3& to);
 /// channels; of the two solutions and all full turns the one nearest to `last`.
 std::array<double, 3> AnglesZxy(const Quaternion& q, const std::array<double, 3>& last);
 /// Angles about x, y, z (rad) of the turn that takes the axes to the unit vectors `x`, `y`, `z`:
-/// about z * about y * about x, the order of Greta's joints.  That about y is within a quarter turn;
-/// where it is one, that about z is 0.
+/// about z * about y * about x, the order of Greta's joints.  That about y is within a quarter
+/// turn; where it is one, that about z is 0.
 std::array<double, 3> AnglesXyz(const Vector3& x, const Vector3& y, const Vector3& z);
 /// `angle` and whole turns, nearest to `last`.
 double Nearest(double angle, double last);
