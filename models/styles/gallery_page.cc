@@ -52,8 +52,8 @@ th.on { color: var(--accent); }
 <body>
 <main>
 <header><h1>Styles</h1><p id="about"></p><button id="theme" style="margin-left:auto">dark</button></header>
-<p class="intro">A point is a style: what the network takes from a speaker's clip, and moves others like. Styles that
-are near each other are alike; each map shows a part of them, and the numbers below say how alike.</p>
+<p class="intro">A point is a style: what the network keeps of how a speaker moves, to move another like that. Styles
+near each other are alike. Each map shows one part of them; the table below has the numbers.</p>
 <div class="bar" id="kinds"></div>
 <div class="maps" id="maps"></div>
 <div class="card" id="details" aria-live="polite"></div>

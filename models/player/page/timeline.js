@@ -49,8 +49,10 @@ class Timeline {
     const stage = document.getElementById("stage").getBoundingClientRect();
     const beside = stage.right < this.canvas.getBoundingClientRect().left;
     if (!beside) return 1;
-    const plain = tracksOf(this.show, this.small, 1, this.lanes).reduce((sum, row) => sum + row.height + GAP, RULER);
-    return Math.min(Math.max((stage.height - 24 - RULER) / (plain - RULER), 1), 2);
+    const high = (stretch) => tracksOf(this.show, this.small, stretch, this.lanes)
+      .reduce((sum, row) => sum + row.height + GAP, RULER);
+    const plain = high(1), twice = high(2);  // words do not grow
+    return Math.min(Math.max(1 + (stage.height - 24 - plain) / Math.max(twice - plain, 1), 1), 2);
   }
 
   // What rows draw with, for the seconds in view or for all of them.
