@@ -18,7 +18,7 @@ class Stage {
       left: most("left", Math.min), right: most("right", Math.max),
       top: most("top", Math.min), bottom: most("bottom", Math.max),
     };
-    this.hasFace = show.takes.some((motion) => motion.body);
+    this.hasBody = show.takes.some((motion) => motion.body);
     this.closeUp = false;
     this.trails = true;
   }
