@@ -75,16 +75,28 @@ Status CheckFormats(const Motion& motion, const Exports& exports) {
   return Status();
 }
 
-/// The last of two outputs of one path would be all that is left.
+/// "a/b" of "./a//c/../b/".
+std::string Plain(const std::string& path) {
+  std::string plain = std::filesystem::path(path).lexically_normal().string();
+  if (plain.size() > 1 && plain.back() == '/') plain.pop_back();
+  return plain;
+}
+
+/// The last of two outputs of one path would be all that is left, and an input would be lost.
 Status CheckPaths(const Arguments& arguments, const Exports& exports) {
   std::vector<std::string> paths = {arguments.output, arguments.html, arguments.svg, arguments.mp4};
   for (const Exports::File& file : exports.files) paths.push_back(file.path);
-  std::set<std::string> seen;
+  std::set<std::string> seen, inputs = {Plain(arguments.weights)};
+  for (const std::string& path : arguments.inputs) inputs.insert(Plain(path));
+  for (const std::string* path :
+       {&arguments.words, &arguments.style, &arguments.source, &arguments.target})
+    inputs.insert(Plain(*path));
   for (const std::string& path : paths) {
     if (path.empty()) continue;
-    std::string plain = std::filesystem::path(path).lexically_normal().string();
-    if (plain.size() > 1 && plain.back() == '/') plain.pop_back();
-    if (!seen.insert(plain).second)
+    // Arrays may be replaced by what was made of them.
+    if (path != arguments.output && inputs.count(Plain(path)) > 0)
+      return Bad(path + ": an input and an output, expected another path for the output");
+    if (!seen.insert(Plain(path)).second)
       return Bad(path + ": named for two outputs, expected a path for each");
   }
   return Status();

@@ -29,7 +29,7 @@ struct Exports {
 };
 
 /// What the command line asks for.  Errors: a format that is unknown; a path that two of all
-/// outputs would have.
+/// outputs, or an input and an output other than --output, would have.
 Result<Exports> ParseExports(const Arguments& arguments);
 
 /// An error where the network makes no motion or what it makes does not suit a format: told before

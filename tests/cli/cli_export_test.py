@@ -112,6 +112,8 @@ class ExportTest(CliTest):
             self.bad("export", FACE, "motion.npz", *outputs, says=["m", "named for two outputs"])
         for outputs in (("--html", "m.npz"), ("--export", "csv=x/../m.npz"), ("--svg", "p", "--mp4", "p")):
             self.bad(self.WEIGHTS, "input.npz", "-o", "m.npz", *outputs, says=["named for two outputs"])
+        self.bad(self.WEIGHTS, "input.npz", "-o", "m.npz", "--svg", "./input.npz", says=["an input and an output"])
+        self.bad("export", FACE, "motion.npz", "--export", "csv=motion.npz", says=["an input and an output"])
 
 
 if __name__ == "__main__":
