@@ -9,6 +9,10 @@
 namespace gestus {
 namespace {
 
+// Huge pages are split where a part of them is given back, and what is left is slow to read: so
+// tensors go by the dozen.
+constexpr std::size_t kGiveBackBytes = std::size_t{16} << 20;
+
 /// (C_out, C_in, k) -> (C_out, k, C_in): the order in which a window of k rows lies in memory.
 template <class T>
 std::vector<std::byte> ByWindow(const TensorView& w) {
@@ -113,14 +117,23 @@ Result<std::vector<PackedPointer>> WeightCache::Pack(const std::vector<Request>&
                   "no memory for " + std::to_string(room) + " bytes of packed weights");
 
   std::byte* to = memory->data();
+  std::vector<TensorView> done;
+  std::size_t done_bytes = 0;
   for (const auto& [key, packing] : missing) {
     packing.Pack(to);
-    packed.GiveBack(packing.weight);
+    done.push_back(packing.weight);
+    done_bytes += packing.Bytes();
+    if (done_bytes >= kGiveBackBytes) {
+      for (const TensorView& weight : done) packed.GiveBack(weight);
+      done.clear();
+      done_bytes = 0;
+    }
     held_.emplace_back(memory, to);
     packed.Add(key, held_.back());
     packed_bytes_ += packing.Bytes();
     to += packing.Room();
   }
+  for (const TensorView& weight : done) packed.GiveBack(weight);
   std::vector<PackedPointer> result;
   for (const Request& request : wanted) {
     result.push_back(packed.Find(KeyOf(request)));
