@@ -35,7 +35,8 @@ void GraphNetwork::RunWindows(const Array& input, const std::string& input_name,
 Status GraphNetwork::Init(std::shared_ptr<const WeightsFile> file, const std::string& name,
                           const NetworkOptions& options) {
   file_ = std::move(file);
-  max_arena_bytes_ = options.max_arena_bytes;
+  plan_options_.max_arena_bytes = options.max_arena_bytes;
+  plan_options_.threads = options.threads;
   cache_ = std::make_unique<WeightCache>(
       options.kernels != nullptr ? *options.kernels : kernels::BestTable(), file_);
   const fb::Network& record = *file_->FindNetwork(name);
@@ -52,7 +53,9 @@ Status GraphNetwork::Init(std::shared_ptr<const WeightsFile> file, const std::st
 }
 
 Result<std::shared_ptr<const Plan>> GraphNetwork::MakePlan(bool taps) {
-  auto plan = Plan::Make(Declare(), *cache_, {.taps = taps, .max_arena_bytes = max_arena_bytes_});
+  PlanOptions options = plan_options_;
+  options.taps = taps;
+  auto plan = Plan::Make(Declare(), *cache_, options);
   if (!plan.ok()) return plan.status().In(file_->path());
   return plan;
 }

@@ -87,15 +87,16 @@ def _agents(options):
 def _agents_of(options, files, workers):
     service = measure.service_times(options.programs, *files, 100 * workers,
                                     options.segments * workers, workers)
-    most = {spread: line.most_agents(service, measure.PERIOD, measure.DEADLINE, spread == "even")
-            for spread in ("random", "even")}
+    most = {name: line.most_agents(service, measure.PERIOD, frames * measure.FRAME, name == "even")
+            for name, frames in (("random", 1), ("even", 1), ("late", page.LATE))}
     growing = {n: line.completions(service, n, measure.PERIOD, False) for n in GROWING
                if n * sum(service) / len(service) < measure.PERIOD}
     real = {}
     for hogs in (0, 2):
         with measure.hogs(hogs):
             real[hogs] = _quantiles(measure.paced(
-                options.programs, *files, workers * most["random"], options.seconds, workers, 1))
+                options.programs, *files, workers * max(1, most["late"]), options.seconds, workers,
+                1))
     return {"service": _quantiles(service), "most": most, "real": real,
             "growing": {n: _quantiles(times) for n, times in growing.items()}}
 
@@ -126,9 +127,9 @@ def _offline(options):
 
 def _quantiles(times):
     times = sorted(times)
-    at = lambda share: times[min(len(times) - 1, int(share * len(times)))]
-    return {"runs": len(times), "p50": at(0.5), "p99": at(0.99), "p99.9": at(0.999),
-            "max": times[-1]}
+    found = {name: times[min(len(times) - 1, int(share * len(times)))]
+             for name, share in (("p50", 0.5), ("p99", 0.99), ("p99.9", 0.999))}
+    return {"runs": len(times), "max": times[-1], **found}
 
 
 if __name__ == "__main__":

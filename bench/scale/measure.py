@@ -9,7 +9,7 @@ import sys
 import time
 
 PERIOD = 64 / 15  # seconds of a segment of ZS-MSTM 1.0
-DEADLINE = 1 / 15  # a frame: motion that is due at once may be late by one
+FRAME = 1 / 15  # seconds
 
 
 def cold_start(programs, weights, residence, threads, starts):
