@@ -73,7 +73,7 @@ Result<std::shared_ptr<const Plan>> Plan::Make(Graph graph, WeightCache& weights
   DropUnused(rewritten);
   if (options.fuse) Fuse(rewritten);
 
-  auto packed = weights.Pack(ToPack(nodes), ReadInPlace(nodes, plan->values_), options.threads);
+  auto packed = weights.Pack(ToPack(nodes), ReadInPlace(nodes, plan->values_));
   if (!packed.ok()) return packed.status();
   auto next = packed->begin();
   plan->steps_.reserve(nodes.size());

@@ -18,7 +18,6 @@ struct PlanOptions {
   bool fuse = true;
   bool taps = false;  ///< keep every tapped value as an output "tap/<scope>/<name>"
   std::uint64_t max_arena_bytes = std::uint64_t{4} << 30;
-  int threads = 1;  ///< that pack weights, the caller's among them; gone when the plan is made
 };
 
 /// Work of one op: floating-point operations and bytes of weights and values touched, once.

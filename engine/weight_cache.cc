@@ -1,13 +1,10 @@
 // Packs weights for the kernels of one instruction set.
 #include "engine/weight_cache.h"
 
-#include <algorithm>
 #include <map>
 #include <mutex>
 
 #include "engine/aligned_buffer.h"
-#include "engine/session.h"
-#include "engine/thread_pool.h"
 
 namespace gestus {
 namespace {
@@ -93,38 +90,22 @@ struct Packing {
     return (Bytes() + 2 * kBufferAlign - 1) / kBufferAlign * kBufferAlign;
   }
 
-  /// This worker's part: its panels of a matrix, all of what has other layouts.
-  void Pack(std::byte* to, const Worker& worker) const {
-    if (layout == PackLayout::kLinear) {
-      const Worker::Range rows = worker.Part(n, kernels.gemm_block_n);
-      if (!rows.empty()) PackRows(to, static_cast<const std::byte*>(weight.data), rows);
-    } else if (worker.index != 0) {
-      return;
-    } else if (layout == PackLayout::kRecurrent) {
-      PackRecurrent(to);
-    } else {
-      PackRows(to, ByWindow(weight).data(), {0, n});
-    }
+  void Pack(std::byte* to) const {
+    if (layout == PackLayout::kConv1d) return PackRows(to, ByWindow(weight).data());
+    PackRows(to, weight.data);
   }
 
-  void PackRows(std::byte* to, const std::byte* w, const Worker::Range& rows) const {
+  void PackRows(std::byte* to, const void* w) const {
     const auto stride = static_cast<std::ptrdiff_t>(k);
-    const std::size_t count = rows.end - rows.begin;
-    w += rows.begin * k * SizeOf(weight.dtype);
+    const bool recurrent = layout == PackLayout::kRecurrent;
     if (products == nullptr) {
-      to += kernels.f32_gemm_packed_size(rows.begin, k) * sizeof(float);
-      kernels.f32_gemm_pack(reinterpret_cast<float*>(to), reinterpret_cast<const float*>(w), stride,
-                            count, k);
-    } else {
-      const float* scale = weight.scale != nullptr ? weight.scale + rows.begin : nullptr;
-      products->gemm_pack(to + products->gemm_packed_size(rows.begin, k), w, scale, stride, count,
-                          k);
+      const auto* weights = static_cast<const float*>(w);
+      auto* floats = reinterpret_cast<float*>(to);
+      return recurrent ? kernels.f32_lstm_pack(floats, weights, k)
+                       : kernels.f32_gemm_pack(floats, weights, stride, n, k);
     }
-  }
-
-  void PackRecurrent(std::byte* to) const {
-    if (products != nullptr) return products->lstm_pack(to, weight.data, weight.scale, k);
-    kernels.f32_lstm_pack(reinterpret_cast<float*>(to), weight.f32(), k);
+    if (recurrent) return products->lstm_pack(to, w, weight.scale, k);
+    products->gemm_pack(to, w, weight.scale, stride, n, k);
   }
 
   const kernels::KernelTable& kernels;
@@ -149,8 +130,7 @@ PackedWeights::Key WeightCache::KeyOf(const Request& request) const {
 }
 
 Result<std::vector<PackedPointer>> WeightCache::Pack(const std::vector<Request>& wanted,
-                                                     const std::vector<TensorView>& in_place,
-                                                     int threads) {
+                                                     const std::vector<TensorView>& in_place) {
   PackedWeights& packed = file_ != nullptr ? file_->packed() : of_no_file_;
   const std::lock_guard lock(packed.mutex());
   GESTUS_RETURN_IF_ERROR(packed.Keep(in_place));
@@ -172,16 +152,9 @@ Result<std::vector<PackedPointer>> WeightCache::Pack(const std::vector<Request>&
 
   std::byte* to = memory->data();
   Originals originals(&packed);
-  ThreadPool pool(missing.empty() ? 1 : std::clamp(threads, 1, kMaxThreads));
   for (const auto& [key, packing] : missing) {  // in the order of their addresses
     originals.GiveBackBefore(packing.weight.data);
-    const std::pair task(&packing, to);
-    pool.Run(
-        [](void* context, Worker worker) {
-          const auto& [what, where] = *static_cast<const decltype(task)*>(context);
-          what->Pack(where, worker);
-        },
-        const_cast<void*>(static_cast<const void*>(&task)));
+    packing.Pack(to);
     originals.Add(packing.weight);
     held_.emplace_back(memory, to);
     packed.Add(key, held_.back());

@@ -35,8 +35,7 @@ class WeightCache {
   /// memory of each is given back before the next: packed or not, a weight is there once.  Those
   /// in `in_place` are read where they lie and stay.
   Result<std::vector<PackedPointer>> Pack(const std::vector<Request>& wanted,
-                                          const std::vector<TensorView>& in_place,
-                                          int threads = 1);
+                                          const std::vector<TensorView>& in_place);
 
   /// What this cache has packed, not counting what it found packed.
   std::size_t packed_bytes() const { return packed_bytes_; }

@@ -6,7 +6,6 @@
 #include <cstring>
 #include <set>
 
-#include "engine/file_reader.h"
 #include "engine/file_scan.h"
 #include "engine/packed_weights.h"
 #include "kernels/kernels.h"
@@ -280,7 +279,7 @@ Result<std::shared_ptr<const WeightsFile>> WeightsFile::Open(const std::string& 
   const bool mapped = options.residence == Residence::kMapped;
   GESTUS_RETURN_IF_ERROR(
       result->memory_.Open(path, mapped, kMinFileSize, kMaxFileSize).In(path));
-  GESTUS_RETURN_IF_ERROR(result->Check(options.threads).In(path));
+  GESTUS_RETURN_IF_ERROR(result->Check().In(path));
   return std::shared_ptr<const WeightsFile>(std::move(result));
 }
 
@@ -293,26 +292,25 @@ Result<std::shared_ptr<const WeightsFile>> WeightsFile::FromMemory(const void* d
   std::shared_ptr<WeightsFile> result(new WeightsFile);
   result->path_ = name;
   GESTUS_RETURN_IF_ERROR(result->memory_.Copy(data, size).In(name));
-  GESTUS_RETURN_IF_ERROR(result->Check(1).In(name));
+  GESTUS_RETURN_IF_ERROR(result->Check().In(name));
   return std::shared_ptr<const WeightsFile>(std::move(result));
 }
 
-Status WeightsFile::ReadAndHash(int threads, FileScan* scan) {
-  // The header lies in the first block: what is no weights file is not read any further.
-  GESTUS_RETURN_IF_ERROR(memory_.Fill({0, std::min(memory_.size(), FileScan::kBlock)}));
-  GESTUS_RETURN_IF_ERROR(CheckHeader(ReadHeader(memory_.data()), memory_.size()));
-  FileReader reader(&memory_, FileScan::kBlock, threads > 1 && memory_.copied());
+Status WeightsFile::ReadAndHash(FileScan* scan) {
   for (FileMemory::Range block; block.begin < memory_.size(); block.begin = block.end) {
     block.end = std::min(memory_.size(), block.begin + FileScan::kBlock);
-    GESTUS_RETURN_IF_ERROR(reader.Await(block));
+    GESTUS_RETURN_IF_ERROR(memory_.Fill(block));
+    // The header lies in the first block: what is no weights file is not read any further.
+    if (block.begin == 0)
+      GESTUS_RETURN_IF_ERROR(CheckHeader(ReadHeader(memory_.data()), memory_.size()));
     scan->Add(memory_.data() + block.begin, block.end - block.begin);
   }
   return {};
 }
 
-Status WeightsFile::Check(int threads) {
+Status WeightsFile::Check() {
   FileScan scan;
-  GESTUS_RETURN_IF_ERROR(ReadAndHash(threads, &scan));
+  GESTUS_RETURN_IF_ERROR(ReadAndHash(&scan));
   if (scan.Checksum() != checksum())
     return Bad("checksum: the content does not match it, the file is damaged");
 

@@ -33,7 +33,6 @@ enum class Residence {
 
 struct LoadOptions {
   Residence residence = Residence::kMapped;
-  int threads = 1;  ///< 2: a private copy is read by one thread while another hashes it
 };
 
 class WeightsFile {
@@ -72,8 +71,8 @@ class WeightsFile {
 
  private:
   WeightsFile();
-  Status Check(int threads);
-  Status ReadAndHash(int threads, FileScan* scan);
+  Status Check();
+  Status ReadAndHash(FileScan* scan);
   Status CheckTensors(const FileScan& scan);
   Status FindScales();
 

@@ -35,8 +35,7 @@ void GraphNetwork::RunWindows(const Array& input, const std::string& input_name,
 Status GraphNetwork::Init(std::shared_ptr<const WeightsFile> file, const std::string& name,
                           const NetworkOptions& options) {
   file_ = std::move(file);
-  plan_options_.max_arena_bytes = options.max_arena_bytes;
-  plan_options_.threads = options.threads;
+  max_arena_bytes_ = options.max_arena_bytes;
   cache_ = std::make_unique<WeightCache>(
       options.kernels != nullptr ? *options.kernels : kernels::BestTable(), file_);
   const fb::Network& record = *file_->FindNetwork(name);
@@ -53,9 +52,7 @@ Status GraphNetwork::Init(std::shared_ptr<const WeightsFile> file, const std::st
 }
 
 Result<std::shared_ptr<const Plan>> GraphNetwork::MakePlan(bool taps) {
-  PlanOptions options = plan_options_;
-  options.taps = taps;
-  auto plan = Plan::Make(Declare(), *cache_, options);
+  auto plan = Plan::Make(Declare(), *cache_, {.taps = taps, .max_arena_bytes = max_arena_bytes_});
   if (!plan.ok()) return plan.status().In(file_->path());
   return plan;
 }

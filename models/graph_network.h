@@ -64,7 +64,7 @@ class GraphNetwork : public Network {
 
   std::shared_ptr<const WeightsFile> file_;
   std::unique_ptr<WeightCache> cache_;
-  PlanOptions plan_options_;
+  std::uint64_t max_arena_bytes_ = 0;
   Signature signature_;
   std::shared_ptr<const Plan> plan_;
 };

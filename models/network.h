@@ -88,7 +88,6 @@ class Network {
 struct NetworkOptions {
   const kernels::KernelTable* kernels = nullptr;  ///< null: BestTable()
   std::uint64_t max_arena_bytes = std::uint64_t{4} << 30;
-  int threads = 1;  ///< that pack weights
   /// False: only kind and signature are wanted; nothing is packed, Run is an error and PlanText
   /// empty.
   bool plan = true;

@@ -52,11 +52,11 @@ double StatusMb(const std::string& field) {
 Status Start(const std::string& path, Residence residence, int threads) {
   Steps steps;
   std::printf("{");
-  auto file = WeightsFile::Open(path, {.residence = residence, .threads = threads});
+  auto file = WeightsFile::Open(path, {.residence = residence});
   if (!file.ok()) return file.status();
   steps.Step("open");
   FirstRun network;
-  GESTUS_RETURN_IF_ERROR(network.Plan(*file, threads));
+  GESTUS_RETURN_IF_ERROR(network.Plan(*file));
   steps.Step("plan");
   GESTUS_RETURN_IF_ERROR(network.MakeSession(threads));
   steps.Step("session");

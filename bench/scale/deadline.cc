@@ -35,7 +35,7 @@ Status Run(const std::string& path, std::int64_t hop, int count) {
   auto file = WeightsFile::Open(path, {.residence = Residence::kCopied});
   if (!file.ok()) return file.status();
   FirstRun network;
-  GESTUS_RETURN_IF_ERROR(network.Plan(*file, 1));
+  GESTUS_RETURN_IF_ERROR(network.Plan(*file));
   GESTUS_RETURN_IF_ERROR(network.MakeSession(1));
   for (int i = 0; i < 10; ++i) network.Run();
   std::vector<std::int64_t> times(static_cast<std::size_t>(count));

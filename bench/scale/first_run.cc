@@ -13,17 +13,17 @@ constexpr std::int64_t kTokens = 32;
 
 }  // namespace
 
-Status FirstRun::Plan(const std::shared_ptr<const WeightsFile>& file, int threads) {
+Status FirstRun::Plan(const std::shared_ptr<const WeightsFile>& file) {
   const fb::Network* network = file->FindNetwork("");
   if (network != nullptr && network->config_type() == fb::Config::ZsMstm1Config) {
-    auto model = models::ZsMstm::Make(file, "", {.kernels = nullptr, .plan = {.threads = threads}});
+    auto model = models::ZsMstm::Make(file, "");
     if (model.ok()) model_ = *std::move(model);
     return model.status();
   }
   auto graph = DeclareNetwork(*file, [](const std::string&) { return kTokens; });
   if (!graph.ok()) return graph.status();
   WeightCache cache(kernels::BestTable(), file);
-  auto plan = gestus::Plan::Make(*std::move(graph), cache, {.threads = threads});
+  auto plan = gestus::Plan::Make(*std::move(graph), cache);
   if (plan.ok()) plan_ = *std::move(plan);
   return plan.status();
 }

@@ -15,7 +15,7 @@ namespace gestus::bench {
 
 class FirstRun {
  public:
-  Status Plan(const std::shared_ptr<const WeightsFile>& file, int threads);
+  Status Plan(const std::shared_ptr<const WeightsFile>& file);
   Status MakeSession(int threads);
   void Run();
   float FirstValue() const;

@@ -56,7 +56,7 @@ class BertNetwork final : public Network {
   BertNetwork(std::shared_ptr<const WeightsFile> file, const NetworkOptions& options)
       : file_(std::move(file)),
         cache_(options.kernels != nullptr ? *options.kernels : kernels::BestTable(), file_),
-        plan_options_{.max_arena_bytes = options.max_arena_bytes, .threads = options.threads} {}
+        max_arena_bytes_(options.max_arena_bytes) {}
 
   Status Init(const fb::Network& record, bool planned);
   const char* kind() const override {
@@ -81,7 +81,7 @@ class BertNetwork final : public Network {
 
   std::shared_ptr<const WeightsFile> file_;
   WeightCache cache_;
-  PlanOptions plan_options_;
+  std::uint64_t max_arena_bytes_;
   BertConfig c_;
   BertWeights w_;
   Signature signature_;
@@ -147,9 +147,7 @@ Result<std::shared_ptr<const Plan>> BertNetwork::MakePlan(std::int64_t length, b
     g.Output("probabilities", BertClassifier(g, w_, hidden));
   else
     g.Output("hidden", hidden);
-  PlanOptions options = plan_options_;
-  options.taps = taps;
-  auto plan = Plan::Make(std::move(g), cache_, options);
+  auto plan = Plan::Make(std::move(g), cache_, {.taps = taps, .max_arena_bytes = max_arena_bytes_});
   if (!plan.ok()) return plan.status().In(file_->path());
   return plan;
 }

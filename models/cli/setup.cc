@@ -60,7 +60,7 @@ Result<Setup> OpenNetwork(const Arguments& arguments, const Offers& offers) {
   Setup setup;
   setup.kernels = *kernels;
   Result<std::shared_ptr<const WeightsFile>> weights =
-      WeightsFile::Open(arguments.weights, {.residence = Residence::kCopied, .threads = arguments.threads});
+      WeightsFile::Open(arguments.weights, {.residence = Residence::kCopied});
   if (!weights.ok()) return weights.status();
   setup.weights = *std::move(weights);
   std::string name = arguments.network;
@@ -71,7 +71,6 @@ Result<Setup> OpenNetwork(const Arguments& arguments, const Offers& offers) {
   }
   models::NetworkOptions options;
   options.kernels = setup.kernels;
-  options.threads = arguments.threads;
   Result<std::unique_ptr<models::Network>> network =
       models::MakeNetwork(setup.weights, name, options);
   if (!network.ok()) return network.status();

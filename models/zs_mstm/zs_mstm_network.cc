@@ -255,7 +255,6 @@ Result<std::unique_ptr<Network>> MakeZsMstmNetwork(std::shared_ptr<const Weights
   ZsMstmOptions model_options;
   model_options.kernels = options.kernels;
   model_options.plan.max_arena_bytes = options.max_arena_bytes;
-  model_options.plan.threads = options.threads;
   auto model = ZsMstm::Make(std::move(file), name, model_options);
   if (!model.ok()) return model.status();
   return std::unique_ptr<Network>(

@@ -156,18 +156,6 @@ TEST_P(WeightsMemoryTest, ModelsOfOneFileShareWhatIsPacked) {
   EXPECT_EQ(OutputOf(*other), expected_);
 }
 
-TEST_P(WeightsMemoryTest, SeveralThreadsReadAndPackTheSame) {
-  for (const int threads : {2, 4}) {
-    const auto file =
-        WeightsFile::Open(temp_.path(), {.residence = GetParam(), .threads = threads});
-    ASSERT_TRUE(file.ok());
-    WeightCache cache(kernels::BestTable(), *file);
-    const auto plan = Plan::Make(Chain(**file), cache, {.threads = threads});
-    ASSERT_TRUE(plan.ok());
-    EXPECT_EQ(OutputOf(*plan), expected_);
-  }
-}
-
 TEST_P(WeightsMemoryTest, PlansThatComeLaterAreTheSame) {
   const auto file = Open();
   for (int i = 0; i < 3; ++i) {
