@@ -24,7 +24,8 @@ def main(arguments=None):
     for part in options.parts:
         print(f"==> {part}", flush=True)
         before = machine.busy_share()
-        results[part] = {"date": f"{datetime.date.today()}", "found": globals()[f"_{part}"](options),
+        found = globals()[f"_{part}"](options)
+        results[part] = {"date": f"{datetime.date.today()}", "found": found,
                          "busy": max(before, machine.busy_share())}
         results["machine"] = machine.describe()
         path.write_text(json.dumps(results))

@@ -181,8 +181,8 @@ Status Serve(const std::string& zs_mstm, const std::string& bert, const Options&
   const auto workers = static_cast<std::size_t>(options.workers);
   std::vector<Server> servers(workers);
   for (std::size_t i = 0; i < workers; ++i)
-    GESTUS_RETURN_IF_ERROR(servers[i].Init(
-        {*model, *plan}, (options.agents + static_cast<int>(i)) / options.workers));
+    GESTUS_RETURN_IF_ERROR(
+        servers[i].Init({*model, *plan}, (options.agents + static_cast<int>(i)) / options.workers));
   for (Server& server : servers) server.Busy(1);  // the first run is no measurement
   const double begin = Now() + 0.1;
   std::vector<std::thread> threads;
@@ -217,8 +217,9 @@ int main(int argc, char** argv) {
     options.seed = static_cast<unsigned>(std::atoi(argv[7]));
   }
   if (options.workers < 1 || options.agents < options.workers || options.segments < 1) {
-    std::fprintf(stderr,
-                 "usage: gestus_agents busy|paced ZS_MSTM.fb BERT.fb AGENTS SEGMENTS WORKERS SEED\n");
+    std::fprintf(
+        stderr,
+        "usage: gestus_agents busy|paced ZS_MSTM.fb BERT.fb AGENTS SEGMENTS WORKERS SEED\n");
     return 2;
   }
   const gestus::Status status = gestus::bench::Serve(argv[2], argv[3], options);

@@ -74,8 +74,7 @@ Status Measure(const std::string& path, int threads, int rounds) {
     for (std::size_t i = 0; i < sessions->size(); ++i) {
       const auto begin = std::chrono::steady_clock::now();
       (*sessions)[i]->Run();
-      const std::chrono::duration<double, std::milli> ms =
-          std::chrono::steady_clock::now() - begin;
+      const std::chrono::duration<double, std::milli> ms = std::chrono::steady_clock::now() - begin;
       if (round >= 0) times[i].push_back(ms.count() / static_cast<double>(kBatches[i]));
     }
   }
@@ -92,7 +91,8 @@ Status Measure(const std::string& path, int threads, int rounds) {
 }  // namespace gestus::bench
 
 int main(int argc, char** argv) {
-  const int threads = argc == 4 ? std::atoi(argv[2]) : 0, rounds = argc == 4 ? std::atoi(argv[3]) : 0;
+  const int threads = argc == 4 ? std::atoi(argv[2]) : 0,
+            rounds = argc == 4 ? std::atoi(argv[3]) : 0;
   if (threads < 1 || rounds < 1) {
     std::fprintf(stderr, "usage: gestus_batch AST.fb THREADS ROUNDS\n");
     return 2;

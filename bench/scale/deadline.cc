@@ -2,8 +2,8 @@
 //
 //   gestus_deadline WEIGHTS.fb HOP_MS COUNT
 //
-// on one thread, in its default configuration, and prints the milliseconds from the moment that each
-// of COUNT runs was due to its end.  Other programs may run beside it: that is what it is for.
+// on one thread, in its default configuration, and prints the milliseconds from the moment that
+// each of COUNT runs was due to its end.  Other programs may run beside it: that is what it is for.
 #include <errno.h>
 #include <time.h>
 
