@@ -27,6 +27,29 @@ std::vector<NamedValue> WantedOutputs(const Graph& graph, bool taps) {
   return outputs;
 }
 
+std::vector<WeightCache::Request> ToPack(const std::vector<Node>& nodes) {
+  std::vector<WeightCache::Request> requests;
+  for (const Node& node : nodes) {
+    if (NeedsPacking(node)) requests.push_back({node.weight, node.layout});
+  }
+  return requests;
+}
+
+/// Tensors that sessions read where they lie.
+std::vector<TensorView> ReadInPlace(const std::vector<Node>& nodes,
+                                    const std::vector<ValueInfo>& values) {
+  std::vector<TensorView> views;
+  for (const Node& node : nodes) {
+    if (!NeedsPacking(node)) views.push_back(node.weight);
+    views.push_back(node.bias);
+  }
+  for (const ValueInfo& value : values) {
+    if (value.constant != nullptr)
+      views.push_back({value.dtype, value.shape, value.constant, nullptr});
+  }
+  return views;
+}
+
 }  // namespace
 
 int Plan::Root(int id) const {
@@ -50,15 +73,14 @@ Result<std::shared_ptr<const Plan>> Plan::Make(Graph graph, WeightCache& weights
   DropUnused(rewritten);
   if (options.fuse) Fuse(rewritten);
 
+  auto packed = weights.Pack(ToPack(nodes), ReadInPlace(nodes, plan->values_));
+  if (!packed.ok()) return packed.status();
+  auto next = packed->begin();
   plan->steps_.reserve(nodes.size());
   for (Node& node : nodes) {
     Step step;
     step.node = std::move(node);
-    if (NeedsPacking(step.node)) {
-      step.packed = weights.Packed(step.node.weight, step.node.layout);
-      if (step.packed == nullptr)
-        return Status(Code::kResourceExhausted, step.node.scope + ": no memory for packed weights");
-    }
+    if (NeedsPacking(step.node)) step.packed = *next++;
     step.cost = CostOf(step.node, plan->values_);
     plan->worker_bytes_ = std::max<std::uint64_t>(
         plan->worker_bytes_,
@@ -126,6 +148,13 @@ Status Plan::PlaceInArena(std::uint64_t max_bytes) {
     const int at = static_cast<int>(i);
     items.push_back({Aligned(floats * sizeof(float)), at, at, &steps_[i].scratch_offset});
   }
+  std::vector<std::uint64_t> change(steps_.size() + 2);  // of the bytes in use, at each step
+  for (const Item& item : items) {
+    change[Index(item.first)] += item.bytes;
+    change[Index(item.last) + 1] -= item.bytes;
+  }
+  std::uint64_t live = 0;
+  for (const std::uint64_t bytes : change) live_bytes_ = std::max(live_bytes_, live += bytes);
   // Largest first, each at the lowest place that is free for its whole life.
   std::stable_sort(items.begin(), items.end(),
                    [](const Item& a, const Item& b) { return a.bytes > b.bytes; });
@@ -174,12 +203,13 @@ std::string Plan::ToString() const {
   }
   std::uint64_t sum = 0;
   for (const Storage& s : storage_) sum += s.in_arena ? s.bytes : 0;
-  std::snprintf(line, sizeof line,
-                "      %zu ops, %.3f GFLOP, arena %.2f MiB (values %.2f MiB), scratch %.2f MiB a "
-                "thread\n",
-                steps_.size(), flops * 1e-9, static_cast<double>(arena_bytes_) / 1048576.0,
-                static_cast<double>(sum) / 1048576.0,
-                static_cast<double>(worker_bytes_) / 1048576.0);
+  std::snprintf(
+      line, sizeof line,
+      "      %zu ops, %.3f GFLOP, arena %.2f MiB (at once %.2f, values %.2f MiB), scratch "
+      "%.2f MiB a thread\n",
+      steps_.size(), flops * 1e-9, static_cast<double>(arena_bytes_) / 1048576.0,
+      static_cast<double>(live_bytes_) / 1048576.0, static_cast<double>(sum) / 1048576.0,
+      static_cast<double>(worker_bytes_) / 1048576.0);
   return text + line;
 }
 
