@@ -45,7 +45,7 @@ def _parser():
                         help="of each run in real time (%(default)s)")
     parser.add_argument("--runs", type=int, default=10000,
                         help="of the network with a deadline (%(default)s)")
-    parser.add_argument("--hop", type=float, default=1 / 50, metavar="SECONDS",
+    parser.add_argument("--hop", type=float, default=measure.FRAME, metavar="SECONDS",
                         help="between those runs (%(default)s)")
     parser.add_argument("--minutes", nargs="+", type=int, default=(1, 10, 60))
     parser.add_argument("--folder", type=pathlib.Path, default=pathlib.Path("out/scale"))
@@ -92,12 +92,13 @@ def _agents_of(options, files, workers):
             for name, frames in (("random", 1), ("even", 1), ("late", page.LATE))}
     growing = {n: line.completions(service, n, measure.PERIOD, False) for n in GROWING
                if n * sum(service) / len(service) < measure.PERIOD}
-    real = {}
-    for hogs in (0, 2):
+    real = []
+    # Beside two busy loops a worker has a good half of a processor at worst.
+    for hogs, agents in ((0, most["late"]), (2, most["late"] // 2)):
+        agents = workers * max(1, agents)
         with measure.hogs(hogs):
-            real[hogs] = _quantiles(measure.paced(
-                options.programs, *files, workers * max(1, most["late"]), options.seconds, workers,
-                1))
+            times = measure.paced(options.programs, *files, agents, options.seconds, workers, 1)
+        real.append({"hogs": hogs, "agents": agents, **_quantiles(times)})
     return {"service": _quantiles(service), "most": most, "real": real,
             "growing": {n: _quantiles(times) for n, times in growing.items()}}
 

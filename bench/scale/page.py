@@ -51,7 +51,8 @@ From arrival to completion, random moments, as agents of one worker grow:
 |---|---|---|---|---|---|
 {growing}
 
-The same in real time, with as many agents as the last column says, alone and beside two busy loops:
+The same in real time, with as many agents as the last column says, and with half of them beside two
+busy loops:
 
 | type | workers | agents | beside | segments | p50 | p99 | p99.9 | largest |
 |---|---|---|---|---|---|---|---|---|
@@ -123,15 +124,15 @@ def _start(found):
 def _agents(found):
     most, growing, real = [], [], []
     for r in found:
-        s, n = r["service"], max(1, r["most"]["late"])
+        s = r["service"]
         most.append(_row(r["type"], r["workers"], f"{_ms(s['p50'])}, {_ms(s['p99'])}",
                          *(r["most"][name] for name in ("even", "random", "late"))))
         for agents, q in r["growing"].items():
             growing.append(_row(r["type"], r["workers"], agents,
                                 *(_ms(q[key]) for key in ("p50", "p99", "p99.9"))))
-        for hogs, q in r["real"].items():
-            real.append(_row(r["type"], r["workers"], n * r["workers"],
-                             f"{hogs} busy loops" if int(hogs) else "nothing", q["runs"],
+        for q in r["real"]:
+            real.append(_row(r["type"], r["workers"], q["agents"],
+                             f"{q['hogs']} busy loops" if q["hogs"] else "nothing", q["runs"],
                              *(_ms(q[key]) for key in ("p50", "p99", "p99.9", "max"))))
     return _AGENTS.format(late=LATE, most="\n".join(most), growing="\n".join(growing), real="\n".join(real))
 
