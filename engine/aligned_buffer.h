@@ -2,6 +2,9 @@
 #ifndef GESTUS_ENGINE_ALIGNED_BUFFER_H_
 #define GESTUS_ENGINE_ALIGNED_BUFFER_H_
 
+#include <sys/mman.h>
+
+#include <cstdint>
 #include <cstdlib>
 #include <cstring>
 #include <memory>
@@ -21,7 +24,9 @@ class AlignedBuffer {
   static AlignedBuffer Unset(std::size_t bytes) {
     AlignedBuffer buffer;
     buffer.data_.reset(std::aligned_alloc(kBufferAlign, Padded(bytes)));
-    if (buffer.data_ != nullptr) buffer.size_ = bytes;
+    if (buffer.data_ == nullptr) return buffer;
+    buffer.size_ = bytes;
+    if (bytes >= kHugePage) AskForHugePages(buffer.data_.get(), Padded(bytes));
     return buffer;
   }
 
@@ -30,6 +35,15 @@ class AlignedBuffer {
   std::size_t size() const { return size_; }
 
  private:
+  static constexpr std::size_t kHugePage = std::size_t{2} << 20;
+
+  /// Fewer page faults when it is touched first, fewer misses of the TLB later.
+  static void AskForHugePages(void* data, std::size_t bytes) {
+    constexpr std::uintptr_t kPage = 4096;
+    const auto begin = reinterpret_cast<std::uintptr_t>(data) / kPage * kPage;
+    const std::uintptr_t end = reinterpret_cast<std::uintptr_t>(data) + bytes;
+    madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE);
+  }
   /// 64 bytes more than asked for: kernels may load, never use, a vector past the end.
   static std::size_t Padded(std::size_t bytes) {
     return (bytes + 2 * kBufferAlign - 1) / kBufferAlign * kBufferAlign;

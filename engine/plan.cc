@@ -27,6 +27,29 @@ std::vector<NamedValue> WantedOutputs(const Graph& graph, bool taps) {
   return outputs;
 }
 
+std::vector<WeightCache::Request> ToPack(const std::vector<Node>& nodes) {
+  std::vector<WeightCache::Request> requests;
+  for (const Node& node : nodes) {
+    if (NeedsPacking(node)) requests.push_back({node.weight, node.layout});
+  }
+  return requests;
+}
+
+/// Tensors that sessions read where they lie.
+std::vector<TensorView> ReadInPlace(const std::vector<Node>& nodes,
+                                    const std::vector<ValueInfo>& values) {
+  std::vector<TensorView> views;
+  for (const Node& node : nodes) {
+    if (!NeedsPacking(node)) views.push_back(node.weight);
+    views.push_back(node.bias);
+  }
+  for (const ValueInfo& value : values) {
+    if (value.constant != nullptr)
+      views.push_back({value.dtype, value.shape, value.constant, nullptr});
+  }
+  return views;
+}
+
 }  // namespace
 
 int Plan::Root(int id) const {
@@ -50,15 +73,14 @@ Result<std::shared_ptr<const Plan>> Plan::Make(Graph graph, WeightCache& weights
   DropUnused(rewritten);
   if (options.fuse) Fuse(rewritten);
 
+  auto packed = weights.Pack(ToPack(nodes), ReadInPlace(nodes, plan->values_));
+  if (!packed.ok()) return packed.status();
+  auto next = packed->begin();
   plan->steps_.reserve(nodes.size());
   for (Node& node : nodes) {
     Step step;
     step.node = std::move(node);
-    if (NeedsPacking(step.node)) {
-      step.packed = weights.Packed(step.node.weight, step.node.layout);
-      if (step.packed == nullptr)
-        return Status(Code::kResourceExhausted, step.node.scope + ": no memory for packed weights");
-    }
+    if (NeedsPacking(step.node)) step.packed = *next++;
     step.cost = CostOf(step.node, plan->values_);
     plan->worker_bytes_ = std::max<std::uint64_t>(
         plan->worker_bytes_,

@@ -37,7 +37,7 @@ class Plan {
   /// One op with what the planner found out.
   struct Step {
     Node node;
-    std::shared_ptr<const AlignedBuffer> packed;
+    PackedPointer packed;
     std::uint64_t scratch_offset = 0;  ///< of state that all workers share, in the arena
     OpCost cost;
   };
