@@ -84,7 +84,7 @@ template <class Arch>
 template <class Arch, std::size_t R>
 [[gnu::noinline]] void gemm_tile(float* out, std::ptrdiff_t out_stride, const float* a,
                                  std::ptrdiff_t a_stride, const float* b, std::size_t k, bool first,
-                                 const float* ahead) {
+                                 const Ahead& ahead) {
   using Tile = GemmTile<Arch>;
   TileSum<Arch, R, Tile::kVectors> sum;
 #pragma GCC unroll 16
@@ -118,7 +118,7 @@ template <class Arch>
     for (std::size_t c = 0; c < columns; ++c) tile[r * Tile::kColumns + c] = source[c];
   }
   with_rows<Tile::kRows>(rows, [&](auto r) {
-    gemm_tile<Arch, r()>(tile, Tile::kColumns, a, a_stride, b, k, first, b);
+    gemm_tile<Arch, r()>(tile, Tile::kColumns, a, a_stride, b, k, first, {});
   });
   for (std::size_t r = 0; r < rows; ++r) {
     float* target = out + row_offset(r, out_stride);
@@ -141,20 +141,17 @@ GESTUS_INLINE void gemm_slice(const GemmArgs& args, const GemmSlice& slice) {
                    slice.k_begin * Tile::kColumns;
   const bool first = slice.k_begin == 0;
   const bool last = slice.k_begin + slice.k == args.k;
-  // Each tile asks for its share of the lines of the next slice, the tiles after that for the lines
-  // at hand, which costs nothing.
-  const std::size_t lines = Tile::kColumns * sizeof(float) * slice.k / 64;
-  const std::size_t ahead_step = slice.k / kTileUnroll * kLinesAhead<Arch>;
-  std::size_t ahead = 0;
+  // The tiles share the lines of the next slice between them.
+  constexpr std::size_t kLineFloats = 64 / sizeof(float);
+  Ahead ahead{slice.next, lines_ahead(Tile::kColumns * kTileUnroll / kLineFloats,
+                                      tiles_of<Arch>(slice.m_end - slice.m_begin))};
   for (std::size_t row = slice.m_begin; row < slice.m_end;) {
     const std::size_t rows = next_tile_rows<Arch>(slice.m_end - row);
     float* out = args.out + row_offset(row, args.out_stride) + slice.column;
     const float* a = args.a + row_offset(row, args.a_stride) + slice.k_begin;
-    const float* ask = ahead < lines ? slice.next + ahead * 16 : b;
-    ahead += ahead_step;
     if (slice.columns == Tile::kColumns) {
       with_rows<Tile::kRows>(rows, [&](auto r) {
-        gemm_tile<Arch, r()>(out, args.out_stride, a, args.a_stride, b, slice.k, first, ask);
+        gemm_tile<Arch, r()>(out, args.out_stride, a, args.a_stride, b, slice.k, first, ahead);
       });
     } else {
       gemm_tile_narrow<Arch>(out, args.out_stride, rows, slice.columns, a, args.a_stride, b,
@@ -164,6 +161,8 @@ GESTUS_INLINE void gemm_slice(const GemmArgs& args, const GemmSlice& slice) {
       finish<Arch>(out, args.out_stride, rows, slice.columns, args.epilogue, row, slice.column);
     }
     row += rows;
+    ahead.from = static_cast<const float*>(ahead.from) +
+                 slice.k / kTileUnroll * ahead.lines * kLineFloats;
   }
 }
 
