@@ -4,7 +4,6 @@
 
 #include <sys/mman.h>
 
-#include <cstdint>
 #include <cstdlib>
 #include <cstring>
 #include <memory>
@@ -23,10 +22,12 @@ class AlignedBuffer {
   /// For memory that is written as a whole at once.
   static AlignedBuffer Unset(std::size_t bytes) {
     AlignedBuffer buffer;
-    buffer.data_.reset(std::aligned_alloc(kBufferAlign, Padded(bytes)));
+    const bool huge = bytes >= kHugePage;
+    buffer.data_.reset(std::aligned_alloc(huge ? kHugePage : kBufferAlign, Padded(bytes)));
     if (buffer.data_ == nullptr) return buffer;
     buffer.size_ = bytes;
-    if (bytes >= kHugePage) AskForHugePages(buffer.data_.get(), Padded(bytes));
+    // Fewer page faults when it is touched first, fewer misses of the TLB later.
+    if (huge) madvise(buffer.data_.get(), Padded(bytes), MADV_HUGEPAGE);
     return buffer;
   }
 
@@ -37,13 +38,6 @@ class AlignedBuffer {
  private:
   static constexpr std::size_t kHugePage = std::size_t{2} << 20;
 
-  /// Fewer page faults when it is touched first, fewer misses of the TLB later.
-  static void AskForHugePages(void* data, std::size_t bytes) {
-    constexpr std::uintptr_t kPage = 4096;
-    const auto begin = reinterpret_cast<std::uintptr_t>(data) / kPage * kPage;
-    const std::uintptr_t end = reinterpret_cast<std::uintptr_t>(data) + bytes;
-    madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE);
-  }
   /// 64 bytes more than asked for: kernels may load, never use, a vector past the end.
   static std::size_t Padded(std::size_t bytes) {
     return (bytes + 2 * kBufferAlign - 1) / kBufferAlign * kBufferAlign;

@@ -72,9 +72,9 @@ Status FileMemory::Open(const std::string& path, bool mapped, std::uint64_t leas
   if (!S_ISREG(st.st_mode)) return Status(Code::kBadWeights, "not a regular file");
   const auto size = static_cast<std::uint64_t>(st.st_size);
   if (size < least || size > most)
-    return Status(Code::kBadWeights,
-                  std::to_string(size) + " bytes, expected a weights file of " +
-                      std::to_string(least) + " bytes to " + std::to_string(most >> 30) + " GiB");
+    return Status(Code::kBadWeights, std::to_string(size) + " bytes, expected a weights file of " +
+                                         std::to_string(least) + " bytes to " +
+                                         std::to_string(most >> 30) + " GiB");
   if (mapped) {
     void* const data = mmap(nullptr, size, PROT_READ, MAP_PRIVATE, fd_, 0);
     if (data != MAP_FAILED) data_ = static_cast<std::uint8_t*>(data);
@@ -123,8 +123,8 @@ Status FileMemory::Restore(const std::vector<Range>& ranges, std::uint64_t check
     return std::any_of(ranges.begin(), ranges.end(),
                        [&](const Range& range) { return Meet(gone, range); });
   };
-  const auto first = std::partition(gone_.begin(), gone_.end(),
-                                    [&](const Range& gone) { return !wanted(gone); });
+  const auto first =
+      std::partition(gone_.begin(), gone_.end(), [&](const Range& gone) { return !wanted(gone); });
   if (first == gone_.end()) return {};
   FileScan scan;
   std::vector<std::uint8_t> block(FileScan::kBlock);

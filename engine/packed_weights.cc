@@ -24,8 +24,7 @@ std::vector<FileMemory::Range> PackedWeights::RangesOf(const std::vector<TensorV
   const auto base = reinterpret_cast<std::uintptr_t>(memory_->data());
   for (const TensorView& view : views) {
     const auto begin = reinterpret_cast<std::uintptr_t>(view.data);
-    const auto bytes =
-        static_cast<std::uint64_t>(view.shape.NumElements()) * SizeOf(view.dtype);
+    const auto bytes = static_cast<std::uint64_t>(view.shape.NumElements()) * SizeOf(view.dtype);
     // What a graph owns lies elsewhere.
     if (view.data == nullptr || begin < base || begin - base >= memory_->size()) continue;
     ranges.push_back({begin - base, begin - base + bytes});
@@ -50,8 +49,8 @@ Status PackedWeights::Keep(const std::vector<TensorView>& views) {
 
 void PackedWeights::GiveBack(const TensorView& view) {
   for (const FileMemory::Range& range : RangesOf({view})) {
-    const bool read = std::any_of(
-        in_place_.begin(), in_place_.end(), [&](const FileMemory::Range& other) {
+    const bool read =
+        std::any_of(in_place_.begin(), in_place_.end(), [&](const FileMemory::Range& other) {
           return range.begin < other.end && other.begin < range.end;
         });
     if (!read) memory_->GiveBack(range);

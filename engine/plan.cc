@@ -148,6 +148,13 @@ Status Plan::PlaceInArena(std::uint64_t max_bytes) {
     const int at = static_cast<int>(i);
     items.push_back({Aligned(floats * sizeof(float)), at, at, &steps_[i].scratch_offset});
   }
+  std::vector<std::uint64_t> change(steps_.size() + 2);  // of the bytes in use, at each step
+  for (const Item& item : items) {
+    change[Index(item.first)] += item.bytes;
+    change[Index(item.last) + 1] -= item.bytes;
+  }
+  std::uint64_t live = 0;
+  for (const std::uint64_t bytes : change) live_bytes_ = std::max(live_bytes_, live += bytes);
   // Largest first, each at the lowest place that is free for its whole life.
   std::stable_sort(items.begin(), items.end(),
                    [](const Item& a, const Item& b) { return a.bytes > b.bytes; });
@@ -196,12 +203,13 @@ std::string Plan::ToString() const {
   }
   std::uint64_t sum = 0;
   for (const Storage& s : storage_) sum += s.in_arena ? s.bytes : 0;
-  std::snprintf(line, sizeof line,
-                "      %zu ops, %.3f GFLOP, arena %.2f MiB (values %.2f MiB), scratch %.2f MiB a "
-                "thread\n",
-                steps_.size(), flops * 1e-9, static_cast<double>(arena_bytes_) / 1048576.0,
-                static_cast<double>(sum) / 1048576.0,
-                static_cast<double>(worker_bytes_) / 1048576.0);
+  std::snprintf(
+      line, sizeof line,
+      "      %zu ops, %.3f GFLOP, arena %.2f MiB (at once %.2f, values %.2f MiB), scratch "
+      "%.2f MiB a thread\n",
+      steps_.size(), flops * 1e-9, static_cast<double>(arena_bytes_) / 1048576.0,
+      static_cast<double>(live_bytes_) / 1048576.0, static_cast<double>(sum) / 1048576.0,
+      static_cast<double>(worker_bytes_) / 1048576.0);
   return text + line;
 }
 

@@ -9,6 +9,44 @@
 namespace gestus {
 namespace {
 
+/// Originals that have been packed, on their way back to the operating system.  A huge page is
+/// split where a part of it is given back, and slow to read afterwards: so tensors go by the dozen,
+/// and none goes while what shares its last page has yet to be packed.
+class Originals {
+ public:
+  explicit Originals(PackedWeights* packed) : packed_(packed) {}
+
+  void Add(const TensorView& weight) {
+    waiting_.push_back(weight);
+    bytes_ += Bytes(weight);
+  }
+  /// `next`: where the next to be packed begins.
+  void GiveBackBefore(const void* next) {
+    if (bytes_ < kDozen) return;
+    const std::uintptr_t end = reinterpret_cast<std::uintptr_t>(next) / kHugePage * kHugePage;
+    std::erase_if(waiting_, [&](const TensorView& weight) {
+      if (reinterpret_cast<std::uintptr_t>(weight.data) + Bytes(weight) > end) return false;
+      packed_->GiveBack(weight);
+      bytes_ -= Bytes(weight);
+      return true;
+    });
+  }
+  void GiveBackAll() {
+    for (const TensorView& weight : waiting_) packed_->GiveBack(weight);
+  }
+
+ private:
+  static constexpr std::size_t kHugePage = std::size_t{2} << 20, kDozen = std::size_t{16} << 20;
+
+  static std::size_t Bytes(const TensorView& view) {
+    return static_cast<std::size_t>(view.shape.NumElements()) * SizeOf(view.dtype);
+  }
+
+  PackedWeights* packed_;
+  std::vector<TensorView> waiting_;
+  std::size_t bytes_ = 0;
+};
+
 /// (C_out, C_in, k) -> (C_out, k, C_in): the order in which a window of k rows lies in memory.
 template <class T>
 std::vector<std::byte> ByWindow(const TensorView& w) {
@@ -97,30 +135,33 @@ Result<std::vector<PackedPointer>> WeightCache::Pack(const std::vector<Request>&
   const std::lock_guard lock(packed.mutex());
   GESTUS_RETURN_IF_ERROR(packed.Keep(in_place));
   std::map<PackedWeights::Key, Packing> missing;
-  std::vector<TensorView> originals;
+  std::vector<TensorView> needed;
   std::size_t room = 0;
   for (const Request& request : wanted) {
     if (packed.Find(KeyOf(request)) != nullptr) continue;
     const auto [packing, added] = missing.try_emplace(KeyOf(request), kernels_, request);
     if (!added) continue;
-    originals.push_back(request.weight);
+    needed.push_back(request.weight);
     room += packing->second.Room();
   }
-  GESTUS_RETURN_IF_ERROR(packed.Restore(originals));
+  GESTUS_RETURN_IF_ERROR(packed.Restore(needed));
   const auto memory = std::make_shared<const AlignedBuffer>(AlignedBuffer::Unset(room));
   if (memory->data() == nullptr)
     return Status(Code::kResourceExhausted,
                   "no memory for " + std::to_string(room) + " bytes of packed weights");
 
   std::byte* to = memory->data();
-  for (const auto& [key, packing] : missing) {
+  Originals originals(&packed);
+  for (const auto& [key, packing] : missing) {  // in the order of their addresses
+    originals.GiveBackBefore(packing.weight.data);
     packing.Pack(to);
-    packed.GiveBack(packing.weight);
+    originals.Add(packing.weight);
     held_.emplace_back(memory, to);
     packed.Add(key, held_.back());
     packed_bytes_ += packing.Bytes();
     to += packing.Room();
   }
+  originals.GiveBackAll();
   std::vector<PackedPointer> result;
   for (const Request& request : wanted) {
     result.push_back(packed.Find(KeyOf(request)));

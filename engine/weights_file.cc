@@ -277,8 +277,7 @@ Result<std::shared_ptr<const WeightsFile>> WeightsFile::Open(const std::string& 
   std::shared_ptr<WeightsFile> result(new WeightsFile);
   result->path_ = path;
   const bool mapped = options.residence == Residence::kMapped;
-  GESTUS_RETURN_IF_ERROR(
-      result->memory_.Open(path, mapped, kMinFileSize, kMaxFileSize).In(path));
+  GESTUS_RETURN_IF_ERROR(result->memory_.Open(path, mapped, kMinFileSize, kMaxFileSize).In(path));
   GESTUS_RETURN_IF_ERROR(result->Check().In(path));
   return std::shared_ptr<const WeightsFile>(std::move(result));
 }
@@ -333,8 +332,7 @@ Status WeightsFile::CheckTensors(const FileScan& scan) {
   tensors_.reserve(root_->tensors()->size());
   for (const fb::Tensor* t : *root_->tensors()) {
     Entry entry;
-    GESTUS_RETURN_IF_ERROR(
-        CheckTensor(*t, tensors_.size(), scanned, data_offset, &end, &entry));
+    GESTUS_RETURN_IF_ERROR(CheckTensor(*t, tensors_.size(), scanned, data_offset, &end, &entry));
     tensors_.push_back(std::move(entry));
   }
   std::sort(tensors_.begin(), tensors_.end(),

@@ -2,8 +2,8 @@
 //
 //   gestus_cold_start WEIGHTS.fb mapped|copied THREADS
 //
-// prints one line of JSON: the milliseconds of each step, the output's first value, and memory in MB
-// after the run and at its peak.
+// prints one line of JSON: the milliseconds of each step, the output's first value, and memory in
+// MB after the run and at its peak.
 #include <time.h>
 
 #include <cstdio>
@@ -82,8 +82,8 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "usage: gestus_cold_start WEIGHTS.fb mapped|copied THREADS\n");
     return 2;
   }
-  const gestus::Status status = gestus::bench::Start(
-      argv[1], mapped ? Residence::kMapped : Residence::kCopied, threads);
+  const gestus::Status status =
+      gestus::bench::Start(argv[1], mapped ? Residence::kMapped : Residence::kCopied, threads);
   if (status.ok()) return 0;
   std::fprintf(stderr, "gestus_cold_start: %s\n", status.message().c_str());
   return 1;

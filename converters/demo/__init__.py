@@ -1,5 +1,2 @@
-"""The demo of `./run demo`: real speech through ZS-MSTM 1.0 at full size, drawn as a picture.
-
-The speech is real; everything that no free source exists for is made up and said to be: the weights
-are random, the word vectors are hashes, the style clip's pose is a procedural wave of the arms.
-"""
+"""The demo of `./run demo`: real speech through small weights that were trained on a synthetic corpus,
+or (--full-size) through the whole network with random ones, drawn as pages and pictures."""

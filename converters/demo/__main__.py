@@ -1,27 +1,13 @@
 """Runs the demo; `./run demo` builds infer-cli and calls this."""
 
 import argparse
-import hashlib
-import json
 import pathlib
-import shlex
-import shutil
-import string
 import subprocess
 import sys
 
-import numpy as np
-
 from ..errors import ConvertError
-from . import recordings, style_clip, terminal
-
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-SPEECH, CLIP = "0870", "0890"
-SENTENCE = ("“And Mr John Dashwood had then leisure to consider how much there might be prudently in "
-            "his power to do for them.”")
-RATE = 15.0  # motion frames per second
-UNTRAINED = ("No trained weights are public: these are random, so the motion is noise around a figure "
-             "at rest.")
+from . import full_size, trained
+from .steps import ROOT, shown
 
 
 def main():
@@ -29,105 +15,17 @@ def main():
     parser.add_argument("--infer-cli", required=True)
     parser.add_argument("--threads", type=int, default=1)
     parser.add_argument("--output", default=str(ROOT / "out" / "demo"), metavar="FOLDER")
+    parser.add_argument("--full-size", action="store_true",
+                        help="the network of the thesis at full size, with random weights")
     options = parser.parse_args()
     out = pathlib.Path(options.output)
     out.mkdir(parents=True, exist_ok=True)
     try:
-        demo(options, out)
+        (full_size if options.full_size else trained).demo(options, out)
     except ConvertError as error:
         sys.exit(f"demo: {error}")
     except subprocess.CalledProcessError as error:
         sys.exit(f"demo: {shown(error.cmd[0])} failed")
-
-
-def demo(options, out):
-    speech, clip = recordings.load(SPEECH), recordings.load(CLIP)
-    words = write_words(speech, out / "speech.json")
-    speaker = out / "speaker"
-    speaker.mkdir(exist_ok=True)
-    shutil.copyfile(clip.path, speaker / "clip.wav")
-    write_words(clip, speaker / "clip.json")
-    pose = style_clip.synthetic_pose(clip, int(clip.seconds * RATE), RATE)
-    style_clip.write_openpose(pose, speaker / "poses")
-
-    weights = random_weights(out)
-    motion = out / "motion.npz"
-    report = infer_cli(options.infer_cli, weights, speech.path, "--words", words, "--style", speaker,
-                       "-o", motion, "--html", out / "motion.html", "--svg", out / "motion.svg",
-                       "--title", SENTENCE, "--threads", options.threads)
-    report_to_terminal(speech, np.load(motion)["pose"], report, out)
-
-
-def infer_cli(*command):
-    """Shows and runs a command; returns its report."""
-    say(" ".join(shlex.quote(shown(part)) for part in command))
-    done = subprocess.run([*map(str, command), "--json"], check=True, stdout=subprocess.PIPE,
-                          text=True)
-    return json.loads(done.stdout)
-
-
-def write_words(recording, path):
-    """The transcript as a list of words with their times, one of the forms that infer-cli reads."""
-    words = [{"word": word, "start": round(start, 3), "end": round(end, 3)}
-             for word, start, end in recording.words]
-    path.write_text(json.dumps({"words": words}, indent=1))
-    return path
-
-
-def say(text):
-    print(f"==> {text}", flush=True)
-
-
-def shown(path):
-    """A path as one would type it here."""
-    path = pathlib.Path(str(path))
-    return str(path.relative_to(ROOT)) if path.is_absolute() and ROOT in path.parents else str(path)
-
-
-# A BERT of two layers is as good as one of twelve when its weights are random; letters are its pieces.
-TOKENS = ["[PAD]", "[UNK]", "[CLS]", "[SEP]", *string.ascii_lowercase, *string.punctuation,
-          *("##" + letter for letter in string.ascii_lowercase)]
-
-
-def random_weights(out):
-    """The weights file, made once for each version of what makes it."""
-    makers = [ROOT / "engine" / "schema" / "weights.fbs", pathlib.Path(__file__),
-              *(ROOT / "converters" / "kinds").glob("*.py"),
-              *(ROOT / "converters" / f"{name}.py" for name in
-                ("bundle", "networks", "random_weights", "schema", "shapes", "weights_file"))]
-    version = hashlib.sha256(b"".join(path.read_bytes() for path in makers)).hexdigest()[:12]
-    path = out / f"untrained-{version}.fb"
-    if not path.exists():
-        for old in out.glob("untrained-*.fb"):
-            old.unlink()
-        say("random weights of the full-size network, 212 million, and of a small BERT (once)")
-        (out / "vocabulary.txt").write_text("\n".join(TOKENS) + "\n")
-        (out / "bert.json").write_text(json.dumps({"layers": 2, "tokens": len(TOKENS)}))
-        converters("random", "--no-self-test", "-o", out / "zs_mstm1.fb")
-        converters("random", "--no-self-test", "--kind", "bert", "--config", out / "bert.json",
-                   "--vocabulary", out / "vocabulary.txt", "-o", out / "bert.fb")
-        converters("bundle", out / "zs_mstm1.fb", out / "bert.fb", "-o", path)
-        for part in ("zs_mstm1.fb", "bert.fb"):
-            (out / part).unlink()
-    return path
-
-
-def converters(*arguments):
-    subprocess.run([sys.executable, "-m", "converters", *map(str, arguments)], check=True, cwd=ROOT)
-
-
-def report_to_terminal(speech, pose, report, out):
-    print()
-    print("\n".join(terminal.figures(pose, RATE)))
-    print(terminal.level(recordings.loudness(speech.samples, speech.rate)))
-    print(SENTENCE + "\n")
-    print(UNTRAINED)
-    print("BERT is random too, word times are estimated, and the style clip's video is a procedural "
-          "wave of the\narms: see converters/demo.\n")
-    print(f"watch    {shown(out / 'motion.html')} (open it in a browser)")
-    print(f"speed    {1000 * report['segment_seconds_median']:.0f} ms a segment of 64 frames "
-          f"(4.27 s of speech), {report['threads']} thread, {report['isa']}")
-    print(f"picture  {shown(out / 'motion.svg')}\nmotion   {shown(out / 'motion.npz')}")
 
 
 if __name__ == "__main__":

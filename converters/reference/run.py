@@ -9,13 +9,18 @@ from .. import kinds
 from .blocks import no_tap
 
 
+def new(network, **optional):
+    """The module of a completed network as PyTorch initialises it."""
+    module = importlib.import_module(f"{__package__}.{kinds.kind_of(network)}").Network
+    return module(network, **optional)
+
+
 def build(network, arrays):
     """The module of a completed network with the weights `arrays` (key -> NumPy array)."""
-    module = importlib.import_module(f"{__package__}.{kinds.kind_of(network)}").Network
     optional = {key: arrays[key] for key in kinds.of(network).optional if key in arrays}
     # Parameters are overwritten below: what they are initialised with only costs time.
     with torch.no_grad(), _without_initialisation():
-        module = module(network, **optional).double().eval()
+        module = new(network, **optional).double().eval()
         module.weights().load_state_dict({key: torch.from_numpy(np.array(array))
                                           for key, array in arrays.items() if key not in optional})
     return module

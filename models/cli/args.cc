@@ -276,6 +276,9 @@ Result<Arguments> ParseArguments(int argc, const char* const* argv) {
       ->add_option("-o,--output", a.output,
                    "The arrays; default: the first INPUT with .features.npz for its ending")
       ->type_name("FILE.npz");
+  features->add_flag("--no-sound", a.no_sound,
+                     "Leave out the stages of the sound, which take the most time: log_mel, pitch "
+                     "and the quality of the voice");
   AddRecording(features, &a);
   AddCompute(features, &a);
   AddShared(features, &a);

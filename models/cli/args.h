@@ -43,7 +43,8 @@ struct Arguments {
   std::vector<std::string> inputs;  ///< kStyle: clips; kStyleInfo and so on: styles
   std::string words;                ///< a transcript, whatever it looks like
   std::string output;  ///< never empty for kInfer, kStyle, kFeatures and what makes files of styles
-  double pose_rate = 0;  ///< frames per second of OpenPose's files; 0: found out
+  bool no_sound = false;  ///< kFeatures: without log_mel, pitch and the quality of the voice
+  double pose_rate = 0;   ///< frames per second of OpenPose's files; 0: found out
   std::string style;
   std::vector<std::string> exports;   ///< FORMAT=PATH each
   std::vector<float> stance;          ///< X, Y and length of the shoulder; empty: the default

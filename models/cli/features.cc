@@ -94,9 +94,14 @@ Status RunFeatures(const Arguments& arguments) {
         AddNetworkInputs(arguments, *inputs, recording, &spec, &account, &network_inputs));
   Result<AtomicFile> file = AtomicFile::Create(arguments.output);
   if (!file.ok()) return file.status().In(arguments.output);
-  Result<Arrays> arrays = features::Stages(recording, inputs->openface, spec, &account);
+  Result<Arrays> arrays =
+      features::Stages(recording, inputs->openface, spec, &account, !arguments.no_sound);
   if (!arrays.ok()) return arrays.status();
   arrays->merge(network_inputs);
+  if (arguments.no_sound && arrays->empty())
+    return Status(Code::kBadInput, arguments.Input() +
+                                       ": nothing is left without the stages of the sound, "
+                                       "expected words, key points or a weights file");
   DropRepeated(&account.notes);
   GESTUS_RETURN_IF_ERROR(WriteNpz(*arrays, &*file).In(arguments.output));
   GESTUS_RETURN_IF_ERROR(file->Commit().In(arguments.output));

@@ -158,7 +158,7 @@ Status AddOpenFace(const std::string& path, Account* account, Arrays* arrays) {
 }  // namespace
 
 Result<Arrays> Stages(const Recording& recording, const std::string& openface,
-                      const FeatureSpec& spec, Account* account) {
+                      const FeatureSpec& spec, Account* account, bool sound) {
   Arrays arrays;
   double seconds = 0;
   if (!recording.audio.empty()) {
@@ -168,8 +168,10 @@ Result<Arrays> Stages(const Recording& recording, const std::string& openface,
       return Status(Code::kBadInput,
                     recording.audio + ": has no samples, expected recorded speech");
     seconds = *length;
-    GESTUS_RETURN_IF_ERROR(AddLogMel(recording.audio, spec, &arrays));
-    GESTUS_RETURN_IF_ERROR(AddVoice(recording.audio, spec, account, &arrays));
+    if (sound) {
+      GESTUS_RETURN_IF_ERROR(AddLogMel(recording.audio, spec, &arrays));
+      GESTUS_RETURN_IF_ERROR(AddVoice(recording.audio, spec, account, &arrays));
+    }
   }
   if (!recording.transcript.empty())
     GESTUS_RETURN_IF_ERROR(AddWords(recording, spec, seconds, account, &arrays));

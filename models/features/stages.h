@@ -22,8 +22,10 @@ namespace gestus::features {
 ///   body_clean, face_clean     cleaned, at the motion's rate
 ///   pose, face                 as the network takes them, where it has joints or landmarks
 ///   openface, openface_confidence, openface_clean   the columns that the file has
+///
+/// Without `sound` the first three lines are left out, which take the most time.
 Result<models::Arrays> Stages(const Recording& recording, const std::string& openface,
-                              const FeatureSpec& spec, Account* account);
+                              const FeatureSpec& spec, Account* account, bool sound = true);
 
 }  // namespace gestus::features
 

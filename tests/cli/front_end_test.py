@@ -231,6 +231,17 @@ class NetworksTest(FrontEndTest):
         self.assertEqual({a["name"] for a in report["arrays"]}, set(out))
         self.assertEqual(len(report["notes"]), len(set(report["notes"])))
 
+    def test_features_without_the_stages_of_the_sound(self):
+        weights = self.talker("zs1", "bert")[0]
+        self.good("features", weights, "talk.wav", "talk.txt", "-o", "all.npz")
+        self.good("features", weights, "talk.wav", "talk.txt", "--no-sound", "-o", "few.npz")
+        every, few = self.load("all.npz"), self.load("few.npz")
+        self.assertEqual(set(every) - set(few), {"log_mel", "pitch", "pitch_strength", "jitter",
+                                                 "shimmer", "hnr", "hammarberg"})
+        self.assert_same(few, {name: every[name] for name in few})
+        self.bad("features", "talk.wav", "--no-sound", "-o", "none.npz",
+                 says=["talk.wav: nothing is left without the stages of the sound"])
+
 
 @unittest.skipUnless(os.path.isdir(os.path.join(ROOT, "../shared/data")) or
                      "GESTUS_SHARED_DATA" in os.environ, "no ../shared/data")

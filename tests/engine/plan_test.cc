@@ -129,6 +129,12 @@ TEST(PlanTest, PlacesAreUsedAgain) {
   EXPECT_EQ(plan->arena_bytes(), 3u * 40000);
 }
 
+TEST(PlanTest, TheArenaIsHardlyLargerThanItMustBe) {
+  const Model model = MakeEveryOp(kernels::BestTable());
+  EXPECT_GE(model.plan->arena_bytes(), model.plan->live_bytes());
+  EXPECT_LE(model.plan->arena_bytes(), model.plan->live_bytes() * 21 / 20);
+}
+
 TEST(PlanTest, TheArenaIsBounded) {
   const auto make = [](std::uint64_t limit) {
     Graph g;

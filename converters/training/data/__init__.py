@@ -1,0 +1,1 @@
+"""Recordings to prepared data sets, and prepared data sets to batches."""

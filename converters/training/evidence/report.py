@@ -1,0 +1,49 @@
+"""The figures of evidence.json as tables of Markdown."""
+
+
+def markdown(figures):
+    parts = []
+    for network, conditions in figures["transfer"].items():
+        for condition, found in conditions.items():
+            parts.append(f"### {network}, {condition} styles, {found['pairs']} pairs\n\n"
+                         + _transfer(found))
+    if figures["probe"]:
+        parts.append("### What the content tells of the style\n\n" + _table(
+            ("run", "error of Dis, share of the style's variance"),
+            [(name, f"{found['error']:.3f}") for name, found in figures["probe"].items()]))
+    for name, found in figures["face"].items():
+        parts.append(f"### {name}, {found['windows']} sequences, "
+                     f"{100 * found['covered']:.0f} % of their frames\n\n" + _face(found))
+    return "\n".join(parts)
+
+
+def _transfer(found):
+    rivals = _table(("against the truth of the transfer", "RMSE, units", "PCC",
+                     "mean distance of a joint, units"),
+                    [(name, f"{x['rmse']:.1f}", _number(x["pcc"]), f"{x['per_point']:.1f}")
+                     for name, x in found["rivals"].items()])
+    dist = _table(("Dist_avg(prediction, target)", "pooled", "mean of pairs",
+                   "pooled, target = exact truth"),
+                  [(name, *(f"{x[key]:.1f} %" for key in ("pooled", "mean", "exact")))
+                   for name, x in found["dist"].items()])
+    timing = _table(("speed of the wrists, correlation with the truth", "PCC"),
+                    [(name, f"{x:.2f}") for name, x in found["timing"].items()])
+    style = _table(("habit of the target speakers", "PCC of the model", "PCC of the gesturer"),
+                   [(name, f"{x['model']:.2f}", f"{x['truth']:.2f}")
+                    for name, x in found["style"].items()])
+    return "\n".join((rivals, dist, timing, style))
+
+
+def _face(found):
+    rows = [(x["name"], _number(x["rmse"], 3), _number(x["pcc"]), _number(x["ahr_intensity"], 1),
+             _number(x["nahr"], 1)) for x in found["channels"]]
+    return _table(("channel", "RMSE", "PCC", "AHR", "NAHR"), rows)
+
+
+def _number(x, digits=2):
+    return "-" if x is None else f"{x:.{digits}f}"
+
+
+def _table(head, rows):
+    lines = [head, ["---"] * len(head), *rows]
+    return "\n".join("| " + " | ".join(line) + " |" for line in lines) + "\n"

@@ -1,0 +1,120 @@
+"""ZS-MSTM: is the motion better than what needs no network, is the style the target's, and does the
+timing come from the speech?"""
+
+import numpy as np
+
+from . import material
+
+_WRISTS = (3, 6)
+_RATE = 15.0
+MEASURES = ("wrist_velocity", "wrist_acceleration", "wrist_jerk", "box_perimeter")
+RIVALS = ("model", "mean pose", "copied source", "shuffled audio")
+
+
+def evidence(found, network, condition, sources_of_each):
+    """The figures of one condition, "seen" or "unseen" styles, as a dictionary."""
+    pairs = list(_pairs(found.data, condition, sources_of_each))
+    folder = found.work / f"{network}-{condition}"
+    rows = []
+    for n, (utterance, other, speaker) in enumerate(pairs):
+        made = {"model": found.motion(utterance, speaker, network),
+                "truth": found.truth(utterance, speaker),
+                "copied source": found.data.load(utterance)["pose"],
+                "shuffled audio": found.motion(other, speaker, network)}
+        style, held_out = (np.concatenate([found.data.load(u)["pose"] for u in utterances])
+                           for utterances in found.clips(speaker))
+        length = min(map(len, made.values()))
+        made = {name: x[:length] for name, x in made.items()}
+        made["mean pose"] = np.tile(style.mean(0, dtype=np.float64).astype(np.float32), (length, 1))
+        made["target"] = held_out
+        for name, x in made.items():
+            material.save(folder / name, f"{n:03d}", pose=x)
+        rows.append({"speaker": speaker, **_timing(made),
+                     **{f"{name} {key}": value for name in ("model", "target", "truth")
+                        for key, value in _habits(made[name]).items()}})
+    return {"pairs": len(pairs), "rivals": _rivals(found, folder), "dist": _dist(found, folder),
+            "timing": {name: float(np.mean([row[name] for row in rows]))
+                       for name in ("same speech", "other speech")},
+            "style": _following(rows)}
+
+
+def _pairs(data, condition, sources_of_each):
+    """(an utterance of the test split, another one of another text, target speaker)"""
+    tests = data.select("test")
+    targets = data.speakers("train" if condition == "seen" else "unseen")
+    for n, speaker in enumerate(targets):
+        for k in range(sources_of_each):
+            others = [u for u in tests if u.speaker != speaker]
+            yield (others[(7 * n + 13 * k) % len(others)],
+                   others[(7 * n + 13 * k + 5) % len(others)], speaker)
+
+
+def _rivals(found, folder):
+    """{rival: mean error and correlation of the joints against the truth of the transfer}"""
+    figures = {}
+    for name in RIVALS:
+        all_of_it = found.evaluate(folder / name, folder / "truth")["all"]
+        figures[name] = {"rmse": all_of_it["means"][0]["rmse"], "pcc": all_of_it["means"][0]["pcc"],
+                         "per_point": all_of_it["minkowski"]["truth"]["per_point"]}
+    return figures
+
+
+def _dist(found, folder):
+    """Eq. 6.9 of each measure: distances of all pairs added up, then put in proportion; and the mean
+    of the pairs' own percentages."""
+    report = found.evaluate(folder / "model", folder / "truth", "--source",
+                            folder / "copied source", "--target", folder / "target")
+    exact = found.evaluate(folder / "model", folder / "truth", "--source",
+                           folder / "copied source", "--target", folder / "truth")
+    return {measure: {"pooled": _pooled(report, measure), "mean": _mean(report, measure),
+                      "exact": _pooled(exact, measure)} for measure in MEASURES}
+
+
+def _pooled(report, measure):
+    source, model = (sum(sequence["behaviour"][measure][f"dist_{name}"]
+                         for sequence in report["sequences"]) for name in ("source", "prediction"))
+    return 100 * model / (source + model)
+
+
+def _mean(report, measure):
+    return float(np.mean([sequence["behaviour"][measure]["dist_avg_prediction"]
+                          for sequence in report["sequences"]]))
+
+
+def _speeds(pose):
+    """(T - 1,) mean speed of the wrists, units a second, over three frames."""
+    points = pose.reshape(len(pose), 2, -1)[:, :, _WRISTS]
+    speed = _RATE * np.linalg.norm(np.diff(points, axis=0), axis=1).mean(1)
+    return np.convolve(speed, np.ones(3) / 3, mode="same")
+
+
+def _timing(made):
+    """Correlation of the wrists' speed with the truth's: of the same speech, and of another's."""
+    truth = _speeds(made["truth"])
+    return {"same speech": np.corrcoef(_speeds(made["model"]), truth)[0, 1],
+            "other speech": np.corrcoef(_speeds(made["shuffled audio"]), truth)[0, 1]}
+
+
+def _habits(pose):
+    """What a style shows in: how fast the wrists are, how high, and which of them moves more."""
+    points = pose.reshape(len(pose), 2, -1)
+    moves = [np.linalg.norm(np.diff(points[:, :, w], axis=0), axis=1).mean() for w in _WRISTS]
+    return {"speed": _RATE * float(np.mean(moves)),
+            "height": -float(points[:, 1, _WRISTS].mean()),
+            "spread": float(np.std(points[:, :, _WRISTS], axis=0).mean()),
+            "right hand": float(moves[0] / (sum(moves) + 1e-6)),
+            "shoulders": float(np.abs(points[:, 0, 1] - points[:, 0, 4]).mean())}
+
+
+def _following(rows):
+    """Correlation over target speakers of their own habits with those of what is made in their
+    style, by the model and by the gesturer, which knows the style."""
+    speakers = sorted({row["speaker"] for row in rows})
+    habits = [key.removeprefix("target ") for key in rows[0] if key.startswith("target ")]
+
+    def means(name, habit):
+        return [np.mean([row[f"{name} {habit}"] for row in rows if row["speaker"] == speaker])
+                for speaker in speakers]
+
+    return {habit: {name: float(np.corrcoef(means(name, habit), means("target", habit))[0, 1])
+                    for name in ("model", "truth")} for habit in habits}

@@ -1,0 +1,155 @@
+"""`demo`: from nothing to the demo's weights file, by the commands that anyone would type.
+
+corpus -> front end (BERT and dialog acts) -> features by the engine -> every model -> one bundle.
+"""
+
+import json
+import pathlib
+import shlex
+import shutil
+import subprocess
+import sys
+
+import numpy as np
+
+from ..errors import ConvertError
+from . import engine
+from .evidence.material import Material
+
+CONFIGS = pathlib.Path(__file__).resolve().parent / "configs"
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+
+# Name in the bundle, its configuration, minutes on one core at most, runs that it begins with.
+MODELS = (
+    ("zs_mstm1", "demo_zs_mstm1", 45, {}),
+    ("model2", "demo_model2", 20, {}),
+    ("ae_speech", "demo_ae_speech", 2, {}),
+    ("ae_face", "demo_ae_face", 2, {}),
+    ("model1", "demo_model1", 5, {"ae_speech": "ae_speech", "ae_face": "ae_face"}),
+    ("zs_mstm2", "demo_zs_mstm2", 15, {}),
+    ("classifier", "demo_classifier", 3, {}),
+)
+_FRONT_END = (("bert", "demo_bert", 6), ("acts", "demo_acts", 2))
+_HOURS = 2.4
+# Does it all fit together?  Nobody learns to gesture in three seconds.
+_SMOKE_CORPUS = ("--hours", 0.01, "--speakers", 2, "--unseen", 1, "--texts", 400)
+_SMOKE_MINUTES = 0.05
+_SMOKE_MODELS = ("zs_mstm1", "model2")
+
+
+def add(commands):
+    demo = commands.add_parser("demo", help="corpus, front end, features, all demo models, a bundle",
+                               description=__doc__)
+    demo.add_argument("--infer-cli", required=True, metavar="PATH")
+    demo.add_argument("-o", "--output", default="out/train", metavar="FOLDER")
+    demo.add_argument("--seed", type=int, default=1)
+    demo.add_argument("--hours", type=float, help=f"of speech (default {_HOURS})")
+    demo.add_argument("--models", help="names, separated by commas (default: all)")
+    demo.add_argument("--smoke", action="store_true",
+                      help="minutes of speech and seconds of training, then motion of a held-out "
+                           "recording: does it all fit together?")
+    demo.add_argument("--resume", action="store_true",
+                      help="keep what is there: corpus, features, finished trainings")
+    demo.set_defaults(run=_demo)
+
+
+def _demo(options):
+    recipe = Recipe(options)
+    recipe.corpus()
+    recipe.front_end()
+    recipe.features()
+    for name, configuration, minutes, pretrained in recipe.models:
+        recipe.train(name, configuration, minutes, recipe.folder / "data", pretrained)
+    recipe.bundle()
+    recipe.styles()
+    if options.smoke:
+        recipe.held_out()
+
+
+class Recipe:
+    def __init__(self, options):
+        self.options, self.folder = options, pathlib.Path(options.output)
+        wanted = options.models.split(",") if options.models else (
+            _SMOKE_MODELS if options.smoke else [name for name, *_ in MODELS])
+        known = {name for name, *_ in MODELS}
+        for name in wanted:
+            if name not in known:
+                raise ConvertError(f"--models: {name}, expected some of {', '.join(sorted(known))}")
+        self.models = [model for model in MODELS if model[0] in wanted]
+        self.folder.mkdir(parents=True, exist_ok=True)
+
+    def corpus(self):
+        size = (_SMOKE_CORPUS if self.options.smoke
+                else ("--hours", self.options.hours or _HOURS))
+        self._step("corpus/index.json", "corpus", "-o", self.folder / "corpus", "--seed",
+                   self.options.seed, *size, "--infer-cli", self.options.infer_cli)
+
+    def front_end(self):
+        for name, configuration, minutes in _FRONT_END:
+            self.train(name, configuration, minutes, self.folder / "corpus", {})
+        self._step("front_end.fb", "bundle", *(f"{name}={self.folder / name / 'weights.fb'}"
+                                               for name, *_ in _FRONT_END),
+                   "-o", self.folder / "front_end.fb", module="converters")
+
+    def features(self):
+        self._step("data/dataset.json", "prepare", self.folder / "corpus", "--front-end",
+                   self.folder / "front_end.fb", "--infer-cli", self.options.infer_cli,
+                   "-o", self.folder / "data")
+
+    def train(self, name, configuration, minutes, data, pretrained):
+        limit = _SMOKE_MINUTES if self.options.smoke else minutes
+        self._step(f"{name}/weights.fb", "train", CONFIGS / f"{configuration}.json", "--data", data,
+                   "-o", self.folder / name, "--minutes", limit, "--seed", self.options.seed,
+                   *(["--resume"] if self.options.resume else []),
+                   *(f"--pretrained={key}={self.folder / run}" for key, run in pretrained.items()))
+
+    def bundle(self):
+        """Everything in one file, with ZS-MSTM 1.0's discriminator, in bf16; autoencoders are parts
+        of Model 1."""
+        names = [name for name, *_ in self.models if not name.startswith("ae_")]
+        parts = [f"{name}={self.folder / name / 'weights.fb'}" for name in names]
+        if "zs_mstm1" in names:
+            parts.append(f"discriminator={self.folder / 'zs_mstm1' / 'discriminator.fb'}")
+        whole = self.folder / "demo-float32.fb"
+        self._step(None, "bundle", *parts, self.folder / "front_end.fb", "-o", whole,
+                   module="converters")
+        self._step(None, "quantise", whole, "--to", "bf16", "-o", self.folder / "demo.fb",
+                   "--infer-cli", self.options.infer_cli, module="converters")
+
+    def styles(self):
+        """Of the liveliest and of the calmest speaker, for the demo."""
+        if "zs_mstm1" not in [name for name, *_ in self.models]:
+            return
+        found = Material(self.folder / "corpus", self.folder / "data", self.folder / "demo.fb",
+                         self.options.infer_cli, self.folder / "work")
+        known = json.loads((self.folder / "corpus" / "index.json").read_text())["speakers"]
+        order = sorted(found.data.speakers("train"), key=lambda name: liveliness(
+            known[name]["style"]))
+        for name, speaker in (("calm", order[0]), ("lively", order[-1])):
+            shutil.copyfile(found.style(speaker, "zs_mstm1"), self.folder / f"{name}.style")
+            print(f"{self.folder / name}.style: of {speaker}")
+
+    def held_out(self):
+        """Motion of a recording that no training saw."""
+        recording = sorted((self.folder / "corpus").glob("unseen*/*"))[0]
+        arrays, _ = engine.arrays_of(self.options.infer_cli, [
+            self.folder / "demo.fb", recording / "speech.wav", recording / "words.json",
+            "--style", self.folder / "lively.style", "--network", "zs_mstm1"])
+        pose = arrays["pose"]
+        if not (np.isfinite(pose).all() and pose.std(0).max() > 0):
+            raise ConvertError(f"{recording}: {pose.shape} poses that do not move")
+        print(f"{recording}: {len(pose)} frames of motion")
+
+    def _step(self, made, *arguments, module="converters.training"):
+        """Runs a command, unless what it makes is there and may be kept."""
+        if made and self.options.resume and (self.folder / made).exists():
+            return
+        command = [sys.executable, "-m", module, *map(str, arguments)]
+        print("==> " + shlex.join(["python3", *command[1:]]), file=sys.stderr, flush=True)
+        if subprocess.run(command, cwd=ROOT, check=False).returncode != 0:
+            raise ConvertError(f"python3 -m {module} {arguments[0]}: failed, see above")
+
+
+def liveliness(style):
+    """How much a speaker of the corpus moves: size of strokes times how often there is one."""
+    return style["amplitude"] ** 2 * (0.3 + style["frequency"]) * (2 - abs(style["arms"]))

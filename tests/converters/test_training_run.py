@@ -1,0 +1,158 @@
+"""Training from the command line: every kind learns, resumes bit by bit and is exported; what cannot
+be is one line."""
+
+import csv
+import json
+import pathlib
+
+import numpy as np
+import pytest
+import training_data
+
+from converters import weights_file
+from converters.training import tasks
+from converters.training.__main__ import main
+
+torch = pytest.importorskip("torch")
+
+CONFIGS = pathlib.Path(__file__).resolve().parents[2] / "converters" / "training" / "configs"
+
+
+@pytest.fixture(name="data", scope="module")
+def make_data(tmp_path_factory):
+    return training_data.write(tmp_path_factory.mktemp("data"))
+
+
+@pytest.fixture(name="texts", scope="module")
+def make_texts(tmp_path_factory):
+    return training_data.write_texts(tmp_path_factory.mktemp("texts"))
+
+
+@pytest.fixture(name="train")
+def make_train(tmp_path, data, texts, capfd):
+    """Trains `configuration` in folder `name`; exit code, the folder, what was said."""
+    def train(configuration, name, *options):
+        path = tmp_path / f"{name}.json"
+        path.write_text(json.dumps(configuration))
+        where = texts if configuration.get("kind") in ("bert", "acts") else data
+        code = main(["train", str(path), "--data", str(where), "-o", str(tmp_path / name),
+                     *map(str, options)])
+        return code, tmp_path / name, capfd.readouterr().err
+    return train
+
+
+def curves(folder):
+    with open(folder / "curves.csv", newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+@pytest.mark.parametrize("kind", tasks.TASKS)
+def test_every_kind_is_trained_and_exported(train, kind):
+    code, folder, said = train(training_data.configuration(kind, steps=40, dev_every=20), "run")
+    assert code == 0, said
+    rows = curves(folder)
+    assert [row["step"] for row in rows] == ["20", "40"]
+    assert float(rows[1]["train_loss"]) < float(rows[0]["train_loss"])
+    file = weights_file.read(str(folder / "weights.fb"))
+    assert file.provenance["trained"] and "self_test" in file.networks[0]
+    state = torch.load(folder / "best.pt")
+    for key, x in file.network_tensors(file.networks[0]).items():
+        if key in state:
+            np.testing.assert_array_equal(x, state[key].numpy())
+    assert "<svg" in (folder / "curves.html").read_text()
+
+
+@pytest.mark.parametrize("kind", ["zs_mstm1", "zs_mstm2", "model2", "bert"])
+def test_a_resumed_run_is_the_uninterrupted_one(train, kind):
+    configuration = training_data.configuration(kind)
+    _, whole, _ = train(configuration, "whole")
+    _, parts, said = train(configuration, "parts", "--minutes", 1e-9)
+    assert len(curves(parts)) == 1 and "step 1/6" in said
+    train(configuration, "parts", "--resume")
+    a, b = (torch.load(folder / "checkpoint.pt")["task"] for folder in (whole, parts))
+    for part in a:
+        assert same(a[part], b[part]), part
+
+
+def same(a, b):
+    if isinstance(a, dict):
+        return a.keys() == b.keys() and all(same(a[key], b[key]) for key in a)
+    if isinstance(a, list):
+        return len(a) == len(b) and all(map(same, a, b))
+    return torch.equal(a, b) if isinstance(a, torch.Tensor) else a == b
+
+
+def test_statistics_travel_with_the_weights(train, data):
+    from converters.training.data.dataset import Dataset
+    _, folder, _ = train(training_data.configuration("zs_mstm1", steps=1), "run")
+    network = weights_file.read(str(folder / "weights.fb")).networks[0]
+    found = {n["stream"]: n for n in network["normalisations"]}
+    opened = Dataset.open(data)
+    pose = np.concatenate([opened.load(u)["pose"] for u in opened.select("train")])
+    np.testing.assert_allclose(found["pose"]["mean"], pose.mean(0), rtol=1e-4)
+    normalised = (pose - found["pose"]["mean"]) / (2 * np.array(found["pose"]["deviation"]))
+    np.testing.assert_allclose(normalised.std(0), 0.5, rtol=1e-4)
+    assert len(found["speech"]["mean"]) == 1 and found["speech"]["divisor"] == 2.0
+
+
+def test_model1_begins_with_the_autoencoders(train):
+    for name, values in (("ae_speech", "f0"), ("ae_face", "face")):
+        train(training_data.configuration("autoencoder", options={"values": values}, steps=1), name)
+    _, first, _ = train(training_data.configuration("model1", steps=1), "plain")
+    runs = [f"--pretrained={name}={first.parent / name}" for name in ("ae_speech", "ae_face")]
+    config = training_data.configuration("model1", steps=1, optimiser={"name": "rmsprop"},
+                                         schedule={"name": "constant", "rate": 1e-12})
+    config["network"] = {"config": {**config["network"]["config"], "hidden2": 2}}
+    code, second, said = train(config, "pretrained", *runs)
+    assert code == 0, said
+    speech, face, both = (torch.load(folder / "best.pt") for folder in (
+        first.parent / "ae_speech", first.parent / "ae_face", second))
+    for theirs, ours in (("encoder.lstm2.weight_hh_l0", "e1_speech.lstm2.weight_hh_l0"),):
+        torch.testing.assert_close(both[ours], speech[theirs])
+    for n in range(2):  # D_face takes 4 * hidden2 columns, as many as AE_face's has
+        torch.testing.assert_close(both[f"d_face.{n}.lstm1.weight_ih_l0"],
+                                   face["decoder.lstm1.weight_ih_l0"])
+
+
+@pytest.mark.parametrize("changes, message", [
+    ({"kind": "zs"}, 'kind: "zs", expected one of acts, '),
+    ({"batch": 0}, "batch: 0, expected a whole number of at least 1"),
+    ({"epochs": 3}, "expected either epochs or steps"),
+    ({"colour": 1}, '"colour" is no field'),
+    ({"options": {"velocity": "much"}}, 'options: velocity: "much", expected a number'),
+    ({"options": {"speed": 1}}, '"speed" is no field'),
+    ({"optimiser": {"name": "sgd"}}, "optimiser: name 'sgd', expected one of adam"),
+    ({"optimiser": {"name": "adam", "beta": 1}}, "optimiser: "),
+    ({"schedule": {"name": "warmup", "rate": 1}}, "schedule: missing 1 required"),
+    ({"schedule": {"name": "constant", "rate": 0}}, "a rate of 0 at the first step"),
+    ({"provenance": {"author": "x"}}, "is no field"),
+    ({"network": {"config": {"d_model": 7}}}, "decoder_heads: 2, expected a divisor"),
+    ({"network": {"config": {"d_modle": 7}}}, "d_modle"),
+    ({"seed": -1}, "seed: -1"),
+    ({"clip": -1}, "clip: -1"),
+])
+def test_what_cannot_be_is_one_line(train, changes, message):
+    code, folder, said = train({**training_data.configuration("zs_mstm1"), **changes}, "run")
+    assert code == 2 and message in said and said.count("\n") == 1, said
+    assert not (folder / "weights.fb").exists()
+
+
+def test_faults_of_the_command_line(train, tmp_path, capfd):
+    good = training_data.configuration("zs_mstm1")
+    for options, message in ((["--device", "cuda:77"], "--device: cuda:77: "),
+                             (["--minutes", "-1"], "--minutes: -1.0"),
+                             (["--pretrained", "x"], "expected NAME=RUN")):
+        code, _, said = train(good, "run", *options)
+        assert code == 2 and message in said and said.count("\n") == 1, said
+    assert main(["train", str(CONFIGS / "zs_mstm1.json"), "--data", str(tmp_path), "-o",
+                 str(tmp_path)]) == 2
+    assert "dataset.json: missing" in capfd.readouterr().err
+    train(good, "run")
+    code, _, said = train({**good, "seed": 2}, "run", "--resume")
+    assert code == 2 and "of another configuration" in said
+
+
+@pytest.mark.parametrize("path", sorted(CONFIGS.glob("*.json")), ids=lambda path: path.stem)
+def test_configurations_of_the_repository_are_read(path):
+    from converters.training import configuration
+    assert configuration.read(path)["about"]
