@@ -54,7 +54,7 @@ constexpr std::size_t kDotUnroll = kTileUnroll == 1 ? 1 : 4;
 template <class Dot, std::size_t R, std::size_t V>
 [[gnu::noinline]] void dot_tile(float* out, std::ptrdiff_t out_stride, const TypedRows<Dot>& from,
                                 std::size_t first_row, const std::byte* panel, std::size_t k,
-                                const Ahead& ahead) {
+                                const Ahead& ahead, const TileEnd& end) {
   using Arch = typename Dot::Isa;
   constexpr std::size_t kWidth = Batch<Arch>::size, kPitch = V * kWidth * Dot::kBytes;
   DotSums<Dot, R, V> sums;
@@ -80,13 +80,22 @@ template <class Dot, std::size_t R, std::size_t V>
   // A row that is used as it is has no zeros behind it.
   if (!Dot::kPrepared && k % Dot::kGroup != 0) dot_step<Dot, R, V, 0, 1>(sums, rows, g, w);
   const std::byte* trailer = panel + packed_groups<Dot>(k) * kPitch;
+  TileSum<Arch, R, V> result;
 #pragma GCC unroll 16
   for (std::size_t r = 0; r < R; ++r) {
     const float scale = from.scales != nullptr ? from.scales[first_row + r] : 1.0f;
 #pragma GCC unroll 8
     for (std::size_t v = 0; v < V; ++v) {
-      Dot::result(sums.v[r][v], scale, trailer + v * kWidth * sizeof(float), V * kWidth)
-          .store_unaligned(out + row_offset(r, out_stride) + v * kWidth);
+      result.v[r][v] =
+          Dot::result(sums.v[r][v], scale, trailer + v * kWidth * sizeof(float), V * kWidth);
+    }
+  }
+  end_tile<Arch, R, V>(result, end);
+#pragma GCC unroll 16
+  for (std::size_t r = 0; r < R; ++r) {
+#pragma GCC unroll 8
+    for (std::size_t v = 0; v < V; ++v) {
+      result.v[r][v].store_unaligned(out + row_offset(r, out_stride) + v * kWidth);
     }
   }
 }
@@ -199,18 +208,25 @@ GESTUS_INLINE void dot_panel(const GemmArgs& args, const TypedRows<Dot>& rows, s
   for (std::size_t row = m_begin; row < m_end;) {
     const std::size_t count = next_tile_rows<Arch>(m_end - row);
     float* out = args.out + row_offset(row, args.out_stride) + column;
-    alignas(64) float tile[Tile::kRows * Tile::kColumns];
-    const bool narrow = columns < Tile::kColumns;
-    with_rows<Tile::kRows>(count, [&](auto r) {
-      dot_tile<Dot, r(), Tile::kVectors>(narrow ? tile : out,
-                                         narrow ? Tile::kColumns : args.out_stride, rows,
-                                         row - m_begin, panel, args.k, ahead);
-    });
-    for (std::size_t r = 0; narrow && r < count; ++r) {
-      std::memcpy(out + row_offset(r, args.out_stride), tile + r * Tile::kColumns,
-                  columns * sizeof(float));
+    if (columns == Tile::kColumns) {
+      const TileEnd end(args.epilogue, row, column);
+      with_rows<Tile::kRows>(count, [&](auto r) {
+        dot_tile<Dot, r(), Tile::kVectors>(out, args.out_stride, rows, row - m_begin, panel, args.k,
+                                           ahead, end);
+      });
+      finish_tile<Arch>(out, args.out_stride, count, columns, args.epilogue, row, column);
+    } else {
+      alignas(64) float tile[Tile::kRows * Tile::kColumns];
+      with_rows<Tile::kRows>(count, [&](auto r) {
+        dot_tile<Dot, r(), Tile::kVectors>(tile, Tile::kColumns, rows, row - m_begin, panel, args.k,
+                                           ahead, {});
+      });
+      for (std::size_t r = 0; r < count; ++r) {
+        std::memcpy(out + row_offset(r, args.out_stride), tile + r * Tile::kColumns,
+                    columns * sizeof(float));
+      }
+      finish<Arch>(out, args.out_stride, count, columns, args.epilogue, row, column);
     }
-    finish<Arch>(out, args.out_stride, count, columns, args.epilogue, row, column);
     row += count;
     ahead.from = static_cast<const std::byte*>(ahead.from) +
                  packed_groups<Dot>(args.k) / kDotUnroll * ahead.lines * kLine;
