@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "engine/fuse.h"
+#include "engine/graph_shapes.h"
 #include "engine/ops/ops.h"
 
 namespace gestus {
@@ -50,6 +51,35 @@ std::vector<TensorView> ReadInPlace(const std::vector<Node>& nodes,
   return views;
 }
 
+// Rows this many bytes apart fall into few sets of an L1 cache, or into one.
+constexpr std::int64_t kCrowdedRows = 2048;
+constexpr std::ptrdiff_t kRowGap = kBufferAlign / sizeof(float);
+
+/// Moves the rows of values apart that only pass from product to product, where their distance
+/// would crowd the rows of a tile into the same sets of the cache.  What is seen from outside, or
+/// by views, keeps its layout.
+void SpreadRows(const std::vector<Node>& nodes, const std::vector<NamedValue>& outputs,
+                std::vector<ValueInfo>& values) {
+  std::vector<bool> inner(values.size(), false);
+  for (const Node& node : nodes) inner[Index(node.output)] = node.op == Op::kLinear;
+  for (const Node& node : nodes) {
+    for (const int in : node.inputs) {
+      if (node.op != Op::kLinear) inner[Index(in)] = false;
+    }
+  }
+  for (const ValueInfo& v : values) {
+    if (v.base >= 0) inner[Index(v.base)] = false;
+  }
+  for (const NamedValue& output : outputs) inner[Index(output.id)] = false;
+  for (std::size_t id = 0; id < values.size(); ++id) {
+    ValueInfo& v = values[id];
+    const std::int64_t bytes = v.shape.Cols() * static_cast<std::int64_t>(SizeOf(v.dtype));
+    if (!inner[id] || v.base >= 0 || v.buffer || bytes % kCrowdedRows != 0) continue;
+    v.row_stride += kRowGap;
+    v.batch_stride = v.row_stride * RowsOf(v.shape);
+  }
+}
+
 }  // namespace
 
 int Plan::Root(int id) const {
@@ -72,6 +102,7 @@ Result<std::shared_ptr<const Plan>> Plan::Make(Graph graph, WeightCache& weights
   const FusibleGraph rewritten{nodes, plan->values_, plan->loops_, plan->outputs_};
   DropUnused(rewritten);
   if (options.fuse) Fuse(rewritten);
+  SpreadRows(nodes, plan->outputs_, plan->values_);
 
   auto packed = weights.Pack(ToPack(nodes), ReadInPlace(nodes, plan->values_));
   if (!packed.ok()) return packed.status();
@@ -139,7 +170,8 @@ Status Plan::PlaceInArena(std::uint64_t max_bytes) {
     const ValueInfo& v = values_[id];
     if (v.base >= 0 || v.constant != nullptr || s.last < 0) continue;
     s.in_arena = true;
-    s.bytes = Aligned(static_cast<std::uint64_t>(v.shape.NumElements()) * SizeOf(v.dtype));
+    const std::int64_t elements = v.batch_stride * BatchOf(v.shape);
+    s.bytes = Aligned(static_cast<std::uint64_t>(elements) * SizeOf(v.dtype));
     items.push_back({s.bytes, s.first, s.last, &s.offset});
   }
   for (std::size_t i = 0; i < steps_.size(); ++i) {

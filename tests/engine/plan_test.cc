@@ -183,6 +183,29 @@ TEST(PlanTest, FusesActivationResidualAndConcat) {
   EXPECT_LE(fused->arena_bytes(), plain->arena_bytes());
 }
 
+TEST(PlanTest, RowsThatWouldCrowdTheCacheLieApart) {
+  Tensors tensors;
+  const LinearWeights wide{tensors.Make({512, 16}, 1), {}}, narrow{tensors.Make({16, 512}, 2), {}};
+  std::vector<float> results[2];
+  for (const bool seen : {false, true}) {
+    Graph g;
+    const Value x = g.Input("x", {3, 5, 16});
+    const Value inner = g.Linear(x, wide);
+    g.Output("y", g.Linear(inner, narrow));
+    if (seen) g.Output("inner", inner);  // whoever reads it may take it for dense
+    const auto plan = MakePlan(std::move(g));
+    EXPECT_EQ(plan->values()[static_cast<std::size_t>(inner.id)].row_stride, seen ? 512 : 528);
+    auto session = Session::Create(plan);
+    ASSERT_TRUE(session.ok());
+    for (int i = 0; i < 3 * 5 * 16; ++i)
+      (*session)->Input("x").f32[i] = 0.01f * static_cast<float>(i * 37 % 101);
+    (*session)->Run();
+    const ValueView y = (*session)->Output("y");
+    results[seen].assign(y.f32, y.f32 + y.shape.NumElements());
+  }
+  EXPECT_EQ(results[0], results[1]);
+}
+
 TEST(PlanTest, DropsWhatNoOutputNeeds) {
   Graph g;
   const Value x = g.Input("x", {4, 4});
