@@ -23,13 +23,16 @@ from . import modules, torch_types
 from .cases import CASES
 from .export import save_traced
 
+_HAS_ONNX = importlib.util.find_spec("onnx") is not None
+if _HAS_ONNX:
+    from . import ort_int8
+
 
 def narrow(folder, case):
     for kind in ("bf16", "int8"):
         _make(folder / f"gestus.{kind}.fb", lambda path, kind=kind: _gestus(folder, kind, path))
         _make(folder / f"torch.{kind}.pt", lambda path, kind=kind: _torch(folder, case, kind, path))
-    if importlib.util.find_spec("onnx") is not None:
-        from . import ort_int8
+    if _HAS_ONNX:
         _make(folder / "ort.int8.onnx",
               lambda path: ort_int8.quantise(folder / "ort.fp32.onnx", path))
 
@@ -38,6 +41,7 @@ def _make(path, write):
     """All or nothing, and only what is missing."""
     if not path.exists():
         unfinished = path.with_name("unfinished." + path.name)
+        print(f"==> making {path.parent.name}/{path.name}", file=sys.stderr, flush=True)
         write(unfinished)
         unfinished.rename(path)
 
@@ -64,10 +68,11 @@ def _torch(folder, case, kind, path):
 
 
 def main(folder, *names):
+    if not _HAS_ONNX:
+        print("==> python3-onnx is not installed: no int8 for ONNX Runtime", file=sys.stderr)
     modules.fix_constants()
     for case in CASES:
         if case.name in names:
-            print(f"==> narrowing {case.title}", file=sys.stderr, flush=True)
             narrow(pathlib.Path(folder) / case.name, case)
 
 
