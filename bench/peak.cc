@@ -27,6 +27,8 @@ GESTUS_DECLARE_PROBE(avx2)
 GESTUS_DECLARE_PROBE(avx512)
 GESTUS_DECLARE_PROBE(neon)
 #undef GESTUS_DECLARE_PROBE
+double DotProbe_bf16(std::size_t repeat, float* sink);
+double DotProbe_int8(std::size_t repeat, float* sink);
 
 namespace {
 
@@ -79,6 +81,19 @@ double Best(double (*fma)(std::size_t, float*)) {
 double PeakGflops(Isa isa) {
   const Probe probe = ProbeFor(isa);
   return probe.fma != nullptr ? Best(probe.fma) : 0.0;
+}
+
+DotPeak PeakOfDots([[maybe_unused]] Isa isa, [[maybe_unused]] DotType type) {
+#ifdef GESTUS_HAVE_AVX512_BF16
+  const bool bf16 = isa == Isa::kAvx512Bf16 || isa == Isa::kAvx512Amx;
+  if (type == DotType::kBf16 && bf16) return {"vdpbf16ps", Best(DotProbe_bf16)};
+#endif
+#ifdef GESTUS_HAVE_AVX512_VNNI
+  const bool vnni =
+      isa == Isa::kAvx512Vnni || isa == Isa::kAvx512Bf16 || isa == Isa::kAvx512Amx;
+  if (type == DotType::kInt8 && vnni) return {"vpdpbusd", Best(DotProbe_int8)};
+#endif
+  return {"", 0.0};
 }
 
 double PeakGflopsAllCores(Isa isa) {

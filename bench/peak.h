@@ -14,7 +14,17 @@ namespace gestus::bench {
 /// one core.  The best of several short runs, measured anew by each call (a few milliseconds).
 double PeakGflops(kernels::Isa isa);
 
-/// The same on all cores at once, the best of all calls so far.
+/// Narrow numbers that some instruction sets multiply faster than float32.
+enum class DotType { kBf16, kInt8 };
+
+struct DotPeak {
+  const char* instruction;  ///< empty where the instruction set has none
+  double gops;              ///< as PeakGflops
+};
+/// The dot products of `isa`; of AMX those of its vectors, not of its tiles.
+DotPeak PeakOfDots(kernels::Isa isa, DotType type);
+
+/// The same as PeakGflops on all cores at once, the best of all calls so far.
 double PeakGflopsAllCores(kernels::Isa isa);
 
 /// GB/s of reading `bytes` again and again on one core; more than the L3 cache for that of DRAM.

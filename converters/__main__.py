@@ -80,6 +80,8 @@ def _parser():
     quantise.add_argument("--keep", metavar="REGEX",
                           help="names of tensors that stay as they are")
     quantise.add_argument("--infer-cli", default="infer-cli", metavar="PATH")
+    quantise.add_argument("--unchecked", action="store_true",
+                          help="without running it: for benchmarks of random weights")
     quantise.set_defaults(run=_quantise)
 
     verify = commands.add_parser("verify", help="compare the engine with PyTorch")

@@ -30,6 +30,8 @@ def quantise(options):
     """Writes `options.output`; returns lines to report."""
     file = weights_file.read(options.weights)
     target = _Target(file, options.to, options.keep, options.weights)
+    if options.unchecked:
+        return [f"{target.write(options.output, {}):,} bytes, outputs not compared"]
     trials = _Trials(options.infer_cli, file, _inputs(file, options.input or []), options.weights)
     lines, kept = [], {}
     for network in file.networks:
@@ -47,6 +49,17 @@ def quantise(options):
     return lines
 
 
+def read_by_products(key, tensor):
+    """Whether that tensor of a network may become bf16 or int8."""
+    return not isinstance(tensor, Quantised) and tensor.ndim >= 2 and not _VALUES.search(key)
+
+
+def narrowed(tensor, kind):
+    """In bf16 or int8; int8 rows that would be too deep in bf16."""
+    deep = tensor.size // len(tensor) > weights_file.MAX_I8_DEPTH
+    return (to_int8 if kind == "int8" and not deep else to_bf16)(tensor)
+
+
 class _Target:
     """The file to be made: which tensors may change, and how it is written."""
 
@@ -62,7 +75,7 @@ class _Target:
         for key in shapes.network_shapes(network):
             name = network["prefix"] + key
             tensor = self._file.tensors[name]
-            if isinstance(tensor, Quantised) or tensor.ndim < 2 or _VALUES.search(key):
+            if not read_by_products(key, tensor):
                 continue
             if self._keep and self._keep.search(name):
                 continue
@@ -93,8 +106,7 @@ class _Target:
         if kind == "float32":
             return tensor
         if (name, kind) not in self._cache:
-            deep = tensor.size // len(tensor) > weights_file.MAX_I8_DEPTH
-            self._cache[name, kind] = (to_int8 if kind == "int8" and not deep else to_bf16)(tensor)
+            self._cache[name, kind] = narrowed(tensor, kind)
         return self._cache[name, kind]
 
     def _with_tolerance(self, network):

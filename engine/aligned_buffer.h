@@ -2,6 +2,8 @@
 #ifndef GESTUS_ENGINE_ALIGNED_BUFFER_H_
 #define GESTUS_ENGINE_ALIGNED_BUFFER_H_
 
+#include <sys/mman.h>
+
 #include <cstdlib>
 #include <cstring>
 #include <memory>
@@ -20,8 +22,12 @@ class AlignedBuffer {
   /// For memory that is written as a whole at once.
   static AlignedBuffer Unset(std::size_t bytes) {
     AlignedBuffer buffer;
-    buffer.data_.reset(std::aligned_alloc(kBufferAlign, Padded(bytes)));
-    if (buffer.data_ != nullptr) buffer.size_ = bytes;
+    const bool huge = bytes >= kHugePage;
+    buffer.data_.reset(std::aligned_alloc(huge ? kHugePage : kBufferAlign, Padded(bytes)));
+    if (buffer.data_ == nullptr) return buffer;
+    buffer.size_ = bytes;
+    // Fewer page faults when it is touched first, fewer misses of the TLB later.
+    if (huge) madvise(buffer.data_.get(), Padded(bytes), MADV_HUGEPAGE);
     return buffer;
   }
 
@@ -30,6 +36,8 @@ class AlignedBuffer {
   std::size_t size() const { return size_; }
 
  private:
+  static constexpr std::size_t kHugePage = std::size_t{2} << 20;
+
   /// 64 bytes more than asked for: kernels may load, never use, a vector past the end.
   static std::size_t Padded(std::size_t bytes) {
     return (bytes + 2 * kBufferAlign - 1) / kBufferAlign * kBufferAlign;

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "engine/fuse.h"
+#include "engine/graph_shapes.h"
 #include "engine/ops/ops.h"
 
 namespace gestus {
@@ -25,6 +26,58 @@ std::vector<NamedValue> WantedOutputs(const Graph& graph, bool taps) {
     for (const NamedValue& tap : graph.taps()) outputs.push_back({"tap/" + tap.name, tap.id});
   }
   return outputs;
+}
+
+std::vector<WeightCache::Request> ToPack(const std::vector<Node>& nodes) {
+  std::vector<WeightCache::Request> requests;
+  for (const Node& node : nodes) {
+    if (NeedsPacking(node)) requests.push_back({node.weight, node.layout});
+  }
+  return requests;
+}
+
+/// Tensors that sessions read where they lie.
+std::vector<TensorView> ReadInPlace(const std::vector<Node>& nodes,
+                                    const std::vector<ValueInfo>& values) {
+  std::vector<TensorView> views;
+  for (const Node& node : nodes) {
+    if (!NeedsPacking(node)) views.push_back(node.weight);
+    views.push_back(node.bias);
+  }
+  for (const ValueInfo& value : values) {
+    if (value.constant != nullptr)
+      views.push_back({value.dtype, value.shape, value.constant, nullptr});
+  }
+  return views;
+}
+
+// Rows this many bytes apart fall into few sets of an L1 cache, or into one.
+constexpr std::int64_t kCrowdedRows = 2048;
+constexpr std::ptrdiff_t kRowGap = kBufferAlign / sizeof(float);
+
+/// Moves the rows of values apart that only pass from product to product, where their distance
+/// would crowd the rows of a tile into the same sets of the cache.  What is seen from outside, or
+/// by views, keeps its layout.
+void SpreadRows(const std::vector<Node>& nodes, const std::vector<NamedValue>& outputs,
+                std::vector<ValueInfo>& values) {
+  std::vector<bool> inner(values.size(), false);
+  for (const Node& node : nodes) inner[Index(node.output)] = node.op == Op::kLinear;
+  for (const Node& node : nodes) {
+    for (const int in : node.inputs) {
+      if (node.op != Op::kLinear) inner[Index(in)] = false;
+    }
+  }
+  for (const ValueInfo& v : values) {
+    if (v.base >= 0) inner[Index(v.base)] = false;
+  }
+  for (const NamedValue& output : outputs) inner[Index(output.id)] = false;
+  for (std::size_t id = 0; id < values.size(); ++id) {
+    ValueInfo& v = values[id];
+    const std::int64_t bytes = v.shape.Cols() * static_cast<std::int64_t>(SizeOf(v.dtype));
+    if (!inner[id] || v.base >= 0 || v.buffer || bytes % kCrowdedRows != 0) continue;
+    v.row_stride += kRowGap;
+    v.batch_stride = v.row_stride * RowsOf(v.shape);
+  }
 }
 
 }  // namespace
@@ -49,16 +102,16 @@ Result<std::shared_ptr<const Plan>> Plan::Make(Graph graph, WeightCache& weights
   const FusibleGraph rewritten{nodes, plan->values_, plan->loops_, plan->outputs_};
   DropUnused(rewritten);
   if (options.fuse) Fuse(rewritten);
+  SpreadRows(nodes, plan->outputs_, plan->values_);
 
+  auto packed = weights.Pack(ToPack(nodes), ReadInPlace(nodes, plan->values_));
+  if (!packed.ok()) return packed.status();
+  auto next = packed->begin();
   plan->steps_.reserve(nodes.size());
   for (Node& node : nodes) {
     Step step;
     step.node = std::move(node);
-    if (NeedsPacking(step.node)) {
-      step.packed = weights.Packed(step.node.weight, step.node.layout);
-      if (step.packed == nullptr)
-        return Status(Code::kResourceExhausted, step.node.scope + ": no memory for packed weights");
-    }
+    if (NeedsPacking(step.node)) step.packed = *next++;
     step.cost = CostOf(step.node, plan->values_);
     plan->worker_bytes_ = std::max<std::uint64_t>(
         plan->worker_bytes_,
@@ -117,7 +170,8 @@ Status Plan::PlaceInArena(std::uint64_t max_bytes) {
     const ValueInfo& v = values_[id];
     if (v.base >= 0 || v.constant != nullptr || s.last < 0) continue;
     s.in_arena = true;
-    s.bytes = Aligned(static_cast<std::uint64_t>(v.shape.NumElements()) * SizeOf(v.dtype));
+    const std::int64_t elements = v.batch_stride * BatchOf(v.shape);
+    s.bytes = Aligned(static_cast<std::uint64_t>(elements) * SizeOf(v.dtype));
     items.push_back({s.bytes, s.first, s.last, &s.offset});
   }
   for (std::size_t i = 0; i < steps_.size(); ++i) {
@@ -126,6 +180,13 @@ Status Plan::PlaceInArena(std::uint64_t max_bytes) {
     const int at = static_cast<int>(i);
     items.push_back({Aligned(floats * sizeof(float)), at, at, &steps_[i].scratch_offset});
   }
+  std::vector<std::uint64_t> change(steps_.size() + 2);  // of the bytes in use, at each step
+  for (const Item& item : items) {
+    change[Index(item.first)] += item.bytes;
+    change[Index(item.last) + 1] -= item.bytes;
+  }
+  std::uint64_t live = 0;
+  for (const std::uint64_t bytes : change) live_bytes_ = std::max(live_bytes_, live += bytes);
   // Largest first, each at the lowest place that is free for its whole life.
   std::stable_sort(items.begin(), items.end(),
                    [](const Item& a, const Item& b) { return a.bytes > b.bytes; });
@@ -174,12 +235,13 @@ std::string Plan::ToString() const {
   }
   std::uint64_t sum = 0;
   for (const Storage& s : storage_) sum += s.in_arena ? s.bytes : 0;
-  std::snprintf(line, sizeof line,
-                "      %zu ops, %.3f GFLOP, arena %.2f MiB (values %.2f MiB), scratch %.2f MiB a "
-                "thread\n",
-                steps_.size(), flops * 1e-9, static_cast<double>(arena_bytes_) / 1048576.0,
-                static_cast<double>(sum) / 1048576.0,
-                static_cast<double>(worker_bytes_) / 1048576.0);
+  std::snprintf(
+      line, sizeof line,
+      "      %zu ops, %.3f GFLOP, arena %.2f MiB (at once %.2f, values %.2f MiB), scratch "
+      "%.2f MiB a thread\n",
+      steps_.size(), flops * 1e-9, static_cast<double>(arena_bytes_) / 1048576.0,
+      static_cast<double>(live_bytes_) / 1048576.0, static_cast<double>(sum) / 1048576.0,
+      static_cast<double>(worker_bytes_) / 1048576.0);
   return text + line;
 }
 

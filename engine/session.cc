@@ -60,7 +60,7 @@ void Session::Impl::BindOps(const Plan& plan) {
     b.node = &step.node;
     for (int in : step.node.inputs) b.in.push_back(RefOf(plan, in));
     b.out = RefOf(plan, step.node.output);
-    b.packed = step.packed != nullptr ? step.packed->data() : nullptr;
+    b.packed = step.packed.get();
     b.shared_scratch = reinterpret_cast<float*>(arena.data() + step.scratch_offset);
     b.worker_scratch = scratch.f32();
     b.worker_scratch_stride = plan.worker_bytes() / sizeof(float);

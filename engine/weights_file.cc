@@ -2,20 +2,14 @@
 // steps before it have proven.
 #include "engine/weights_file.h"
 
-#include <errno.h>
-#include <fcntl.h>
-#include <sys/mman.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstring>
 #include <set>
 
+#include "engine/file_scan.h"
+#include "engine/packed_weights.h"
 #include "kernels/kernels.h"
 #include "weights_generated.h"
-#define XXH_INLINE_ALL
-#include <xxhash.h>
 
 namespace gestus {
 namespace {
@@ -28,7 +22,6 @@ constexpr std::uint64_t kMaxMetadataSize = std::uint64_t{64} << 20;
 constexpr std::uint32_t kFormatVersion = 1;
 constexpr std::uint32_t kEndianMark = 0x01020304;
 constexpr char kMagic[8] = {'G', 'E', 'S', 'T', 'U', 'S', 'W', '\0'};
-constexpr std::size_t kChecksumOffset = 56;
 constexpr std::size_t kMaxNameLength = 255;
 constexpr std::int64_t kMaxDim = std::int64_t{1} << 24;
 constexpr int kMaxDepth = 8;
@@ -47,7 +40,8 @@ struct Header {
   std::uint8_t reserved[16];
   std::uint64_t checksum;
 };
-static_assert(sizeof(Header) == kHeaderSize);
+static_assert(sizeof(Header) == kHeaderSize && FileScan::kHeaderSize == kHeaderSize &&
+              FileScan::kChecksumOffset == offsetof(Header, checksum));
 
 Header ReadHeader(const std::uint8_t* base) {
   Header h;
@@ -58,18 +52,6 @@ Header ReadHeader(const std::uint8_t* base) {
 std::uint64_t AlignUp(std::uint64_t n) { return (n + kAlign - 1) / kAlign * kAlign; }
 
 Status Bad(std::string message) { return Status(Code::kBadWeights, std::move(message)); }
-
-/// XXH3-64 of the file with its checksum field taken as zero.
-std::uint64_t Checksum(const std::uint8_t* base, std::uint64_t size) {
-  std::uint8_t header[kHeaderSize];
-  std::memcpy(header, base, kHeaderSize);
-  std::memset(header + kChecksumOffset, 0, sizeof(std::uint64_t));
-  alignas(64) XXH3_state_t state;
-  XXH3_64bits_reset(&state);
-  XXH3_64bits_update(&state, header, kHeaderSize);
-  XXH3_64bits_update(&state, base + kHeaderSize, size - kHeaderSize);
-  return XXH3_64bits_digest(&state);
-}
 
 Status CheckHeader(const Header& h, std::uint64_t size) {
   if (std::memcmp(h.magic, kMagic, sizeof kMagic) != 0)
@@ -129,41 +111,56 @@ bool Convert(fb::DType from, DType* to) {
 
 /// Whether no exponent of n floats of the bits Bits is that of NaN and infinity.
 template <class Bits>
-bool AllFinite(const void* x, std::size_t n, Bits exponent_mask) {
-  const auto* p = static_cast<const std::uint8_t*>(x);
-  Bits worst = 0;
-  for (std::size_t i = 0; i < n; ++i) {
+bool AllFinite(const std::uint8_t* p, std::uint64_t bytes, Bits exponent_mask) {
+  for (std::uint64_t i = 0; i + sizeof(Bits) <= bytes; i += sizeof(Bits)) {
     Bits bits;
-    std::memcpy(&bits, p + i * sizeof bits, sizeof bits);
-    const auto exponent = static_cast<Bits>(bits & exponent_mask);
-    worst = worst > exponent ? worst : exponent;
+    std::memcpy(&bits, p + i, sizeof bits);
+    if ((bits & exponent_mask) == exponent_mask) return false;
   }
-  return worst != exponent_mask;
+  return true;
 }
 
+bool GoodValues(DType dtype, const std::uint8_t* p, std::uint64_t bytes) {
+  if (dtype == DType::kF32) return AllFinite<std::uint32_t>(p, bytes, 0x7f800000u);
+  if (dtype == DType::kBF16) return AllFinite<std::uint16_t>(p, bytes, 0x7f80u);
+  return dtype != DType::kI8 || std::memchr(p, 0x80, bytes) == nullptr;
+}
+
+/// The bytes of a file, and what its scan found.
+struct Scanned {
+  const std::uint8_t* file;
+  std::uint64_t size;
+  const FileScan& scan;
+
+  /// Looks at the values of the blocks that the scan suspects; a block may hold other tensors too.
+  bool Good(DType dtype, const std::uint8_t* data, std::uint64_t bytes) const {
+    const auto begin = static_cast<std::uint64_t>(data - file);
+    for (std::uint64_t at = begin, end; at < begin + bytes; at = end) {
+      const std::uint64_t block = at / FileScan::kBlock;
+      end = std::min(begin + bytes, (block + 1) * FileScan::kBlock);
+      if (scan.MayBeBad(dtype, block) && !GoodValues(dtype, file + at, end - at)) return false;
+    }
+    return true;
+  }
+};
+
 /// What the numbers of a tensor must be.
-Status CheckValues(const TensorView& view, std::uint64_t elements, const std::string& where) {
-  const bool finite =
-      view.dtype == DType::kF32    ? AllFinite<std::uint32_t>(view.data, elements, 0x7f800000u)
-      : view.dtype == DType::kBF16 ? AllFinite<std::uint16_t>(view.data, elements, 0x7f80u)
-                                   : true;
-  if (!finite) return Bad(where + "holds NaN or infinity, expected finite weights");
-  if (view.dtype != DType::kI8) return {};
-  if (view.shape.rank() < 2) return Bad(where + "I8 with fewer than two dimensions");
-  const std::uint64_t depth = elements / static_cast<std::uint64_t>(view.shape[0]);
+Status CheckValues(const Scanned& scanned, const TensorView& view, std::uint64_t bytes,
+                   const std::string& where) {
+  const bool i8 = view.dtype == DType::kI8;
+  if (i8 && view.shape.rank() < 2) return Bad(where + "I8 with fewer than two dimensions");
+  const std::uint64_t depth = i8 ? bytes / static_cast<std::uint64_t>(view.shape[0]) : 0;
   if (depth > kMaxI8Depth)
     return Bad(where + "rows of " + std::to_string(depth) + " I8 elements, expected at most " +
                std::to_string(kMaxI8Depth) + ", whose sums fit 32 bits");
-  const auto* p = static_cast<const std::int8_t*>(view.data);
-  std::int8_t least = 0;
-  for (std::uint64_t i = 0; i < elements; ++i) least = p[i] < least ? p[i] : least;
-  if (least < -127) return Bad(where + "holds -128, expected -127 to 127");
-  return {};
+  if (scanned.Good(view.dtype, static_cast<const std::uint8_t*>(view.data), bytes)) return {};
+  return Bad(where + (i8 ? "holds -128, expected -127 to 127"
+                         : "holds NaN or infinity, expected finite weights"));
 }
 
 /// Checks one tensor record and makes its view; `end` is where the previous payload ended.
-Status CheckTensor(const fb::Tensor& t, std::size_t index, const std::uint8_t* data,
-                   std::uint64_t data_size, std::uint64_t* end, WeightsFile::Entry* entry) {
+Status CheckTensor(const fb::Tensor& t, std::size_t index, const Scanned& scanned,
+                   std::uint64_t data_offset, std::uint64_t* end, WeightsFile::Entry* entry) {
   const std::string_view name = t.name()->string_view();
   if (!PrintableName(name))
     return Bad("tensor number " + std::to_string(index) +
@@ -194,11 +191,12 @@ Status CheckTensor(const fb::Tensor& t, std::size_t index, const std::uint8_t* d
     return Bad(where + "offset " + std::to_string(t.offset()) + ", expected a multiple of 64");
   if (t.offset() < *end) return Bad(where + "payload overlaps the one before it");
   // The last 64 bytes of the region are padding that kernels may read past the last tensor.
+  const std::uint64_t data_size = scanned.size - data_offset;
   if (bytes > data_size - kAlign || t.offset() > data_size - kAlign - bytes)
     return Bad(where + "payload ends outside the data region");
   *end = AlignUp(t.offset() + bytes);
   entry->bytes = bytes;
-  entry->view.data = data + t.offset();
+  entry->view.data = scanned.file + data_offset + t.offset();
   const bool scaled = t.scale() != nullptr && t.scale()->size() > 0;
   if (scaled != (entry->view.dtype == DType::kI8))
     return Bad(where + (scaled ? "has a scale, which only I8 has" : "I8 without a scale"));
@@ -207,7 +205,7 @@ Status CheckTensor(const fb::Tensor& t, std::size_t index, const std::uint8_t* d
       return Bad(where + "name of its scale is longer than 255 bytes or not printable");
     entry->scale = t.scale()->str();
   }
-  return CheckValues(entry->view, elements, where);
+  return CheckValues(scanned, entry->view, bytes, where);
 }
 
 Status CheckJoints(const flatbuffers::Vector<flatbuffers::Offset<fb::Joint>>* joints,
@@ -269,67 +267,17 @@ Status CheckNetworks(const fb::WeightsFile& root) {
   return {};
 }
 
-Status ErrnoStatus(const std::string& path, const char* what) {
-  return Status(errno == ENOENT ? Code::kNotFound : Code::kIo,
-                path + ": " + what + ": " + std::strerror(errno));
-}
-
-/// A file descriptor that closes itself.
-struct File {
-  int fd = -1;
-  ~File() {
-    if (fd >= 0) close(fd);
-  }
-};
-
-Status ReadAll(int fd, std::uint8_t* to, std::uint64_t size, const std::string& path) {
-  std::uint64_t done = 0;
-  while (done < size) {
-    const ssize_t n = pread(fd, to + done, size - done, static_cast<off_t>(done));
-    if (n < 0 && errno == EINTR) continue;
-    if (n < 0) return ErrnoStatus(path, "cannot read");
-    if (n == 0) return Bad(path + ": file became shorter while it was read");
-    done += static_cast<std::uint64_t>(n);
-  }
-  return {};
-}
-
 }  // namespace
 
-WeightsFile::~WeightsFile() {
-  // Both kinds of residence are mappings, of the file or of anonymous memory.
-  if (base_ != nullptr) munmap(const_cast<std::uint8_t*>(base_), size_);
-}
+WeightsFile::WeightsFile() : packed_(std::make_unique<PackedWeights>(&memory_)) {}
+WeightsFile::~WeightsFile() = default;
 
 Result<std::shared_ptr<const WeightsFile>> WeightsFile::Open(const std::string& path,
                                                              const LoadOptions& options) {
-  File file;
-  do {
-    file.fd = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-  } while (file.fd < 0 && errno == EINTR);
-  if (file.fd < 0) return ErrnoStatus(path, "cannot open");
-  struct stat st;
-  if (fstat(file.fd, &st) != 0) return ErrnoStatus(path, "cannot stat");
-  if (!S_ISREG(st.st_mode)) return Bad(path + ": not a regular file");
-  const auto size = static_cast<std::uint64_t>(st.st_size);
-  if (size < kMinFileSize || size > kMaxFileSize)
-    return Bad(path + ": " + std::to_string(size) + " bytes, expected a weights file of " +
-               std::to_string(kMinFileSize) + " bytes to 64 GiB");
-
   std::shared_ptr<WeightsFile> result(new WeightsFile);
   result->path_ = path;
-  result->mapped_ = options.residence == Residence::kMapped;
-  void* base = result->mapped_ ? mmap(nullptr, size, PROT_READ, MAP_PRIVATE, file.fd, 0)
-                               : mmap(nullptr, size, PROT_READ | PROT_WRITE,
-                                      MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-  if (base == MAP_FAILED) {
-    return Status(Code::kResourceExhausted, path + ": cannot map " + std::to_string(size) +
-                                                " bytes: " + std::strerror(errno));
-  }
-  result->base_ = static_cast<std::uint8_t*>(base);
-  result->size_ = size;
-  if (!result->mapped_)
-    GESTUS_RETURN_IF_ERROR(ReadAll(file.fd, static_cast<std::uint8_t*>(base), size, path));
+  const bool mapped = options.residence == Residence::kMapped;
+  GESTUS_RETURN_IF_ERROR(result->memory_.Open(path, mapped, kMinFileSize, kMaxFileSize).In(path));
   GESTUS_RETURN_IF_ERROR(result->Check().In(path));
   return std::shared_ptr<const WeightsFile>(std::move(result));
 }
@@ -340,39 +288,51 @@ Result<std::shared_ptr<const WeightsFile>> WeightsFile::FromMemory(const void* d
   if (data == nullptr || size < kMinFileSize)
     return Bad(name + ": " + std::to_string(size) + " bytes, expected at least " +
                std::to_string(kMinFileSize));
-  void* base = mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-  if (base == MAP_FAILED)
-    return Status(Code::kResourceExhausted,
-                  name + ": cannot reserve " + std::to_string(size) + " bytes");
   std::shared_ptr<WeightsFile> result(new WeightsFile);
   result->path_ = name;
-  result->base_ = static_cast<std::uint8_t*>(base);
-  result->size_ = size;
-  std::memcpy(base, data, size);
+  GESTUS_RETURN_IF_ERROR(result->memory_.Copy(data, size).In(name));
   GESTUS_RETURN_IF_ERROR(result->Check().In(name));
   return std::shared_ptr<const WeightsFile>(std::move(result));
 }
 
+Status WeightsFile::ReadAndHash(FileScan* scan) {
+  for (FileMemory::Range block; block.begin < memory_.size(); block.begin = block.end) {
+    block.end = std::min(memory_.size(), block.begin + FileScan::kBlock);
+    GESTUS_RETURN_IF_ERROR(memory_.Fill(block));
+    // The header lies in the first block: what is no weights file is not read any further.
+    if (block.begin == 0)
+      GESTUS_RETURN_IF_ERROR(CheckHeader(ReadHeader(memory_.data()), memory_.size()));
+    scan->Add(memory_.data() + block.begin, block.end - block.begin);
+  }
+  return {};
+}
+
 Status WeightsFile::Check() {
-  const Header header = ReadHeader(base_);
-  GESTUS_RETURN_IF_ERROR(CheckHeader(header, size_));
-  if (Checksum(base_, size_) != header.checksum)
+  FileScan scan;
+  GESTUS_RETURN_IF_ERROR(ReadAndHash(&scan));
+  if (scan.Checksum() != checksum())
     return Bad("checksum: the content does not match it, the file is damaged");
 
-  const std::uint8_t* metadata = base_ + kHeaderSize;
-  flatbuffers::Verifier verifier(metadata, header.metadata_size, kMaxDepth, kMaxTables);
+  const std::uint8_t* metadata = memory_.data() + kHeaderSize;
+  flatbuffers::Verifier verifier(metadata, ReadHeader(memory_.data()).metadata_size, kMaxDepth,
+                                 kMaxTables);
   if (!fb::VerifyWeightsFileBuffer(verifier))
     return Bad("metadata: not a valid FlatBuffer of identifier GSTW");
   root_ = fb::GetWeightsFile(metadata);
 
   GESTUS_RETURN_IF_ERROR(CheckNetworks(*root_));
-  const std::uint64_t data_offset = AlignUp(kHeaderSize + header.metadata_size);
+  return CheckTensors(scan);
+}
+
+Status WeightsFile::CheckTensors(const FileScan& scan) {
+  const std::uint8_t* file = memory_.data();
+  const std::uint64_t data_offset = AlignUp(kHeaderSize + ReadHeader(file).metadata_size);
+  const Scanned scanned{file, memory_.size(), scan};
   std::uint64_t end = 0;
   tensors_.reserve(root_->tensors()->size());
   for (const fb::Tensor* t : *root_->tensors()) {
     Entry entry;
-    GESTUS_RETURN_IF_ERROR(
-        CheckTensor(*t, tensors_.size(), base_ + data_offset, header.data_size, &end, &entry));
+    GESTUS_RETURN_IF_ERROR(CheckTensor(*t, tensors_.size(), scanned, data_offset, &end, &entry));
     tensors_.push_back(std::move(entry));
   }
   std::sort(tensors_.begin(), tensors_.end(),
@@ -405,8 +365,10 @@ Status WeightsFile::FindScales() {
   return {};
 }
 
-std::uint64_t WeightsFile::checksum() const { return ReadHeader(base_).checksum; }
-std::uint32_t WeightsFile::format_version() const { return ReadHeader(base_).format_version; }
+std::uint64_t WeightsFile::checksum() const { return ReadHeader(memory_.data()).checksum; }
+std::uint32_t WeightsFile::format_version() const {
+  return ReadHeader(memory_.data()).format_version;
+}
 
 const WeightsFile::Entry* WeightsFile::Find(std::string_view name) const {
   const auto it = std::lower_bound(tensors_.begin(), tensors_.end(), name,
@@ -421,18 +383,6 @@ const fb::Network* WeightsFile::FindNetwork(std::string_view name) const {
     if (n->name()->string_view() == name) return n;
   }
   return nullptr;
-}
-
-void WeightsFile::GiveBack(const TensorView& view) const {
-  if (!mapped_) return;
-  const auto page = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));
-  const auto begin = reinterpret_cast<std::uintptr_t>(view.data);
-  const std::uintptr_t end =
-      begin + static_cast<std::uintptr_t>(view.shape.NumElements()) * SizeOf(view.dtype);
-  // Only pages that lie wholly inside: their neighbours belong to other tensors.
-  const std::uintptr_t first = (begin + page - 1) / page * page;
-  const std::uintptr_t last = end / page * page;
-  if (first < last) madvise(reinterpret_cast<void*>(first), last - first, MADV_DONTNEED);
 }
 
 }  // namespace gestus

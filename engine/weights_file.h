@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/file_memory.h"
 #include "engine/status.h"
 #include "engine/tensor.h"
 
@@ -20,9 +21,14 @@ struct WeightsFile;
 struct Network;
 }  // namespace fb
 
+class FileScan;
+class PackedWeights;
+
+/// Where the bytes are.  With both, a tensor's pages go back to the operating system once it is
+/// packed for the kernels (weight_cache.h), so that memory never holds much more than the file.
 enum class Residence {
-  kMapped,  ///< mmap: starts fast, pages shared between processes; the file must not be truncated
-  kCopied   ///< private copy: nothing that happens to the file later matters
+  kMapped,  ///< mmap: memory that the kernel may take back; the file must stay as it is
+  kCopied   ///< private copy: nothing that happens to the file later matters to what was planned
 };
 
 struct LoadOptions {
@@ -48,7 +54,7 @@ class WeightsFile {
   WeightsFile& operator=(const WeightsFile&) = delete;
 
   const std::string& path() const { return path_; }
-  std::uint64_t file_size() const { return size_; }
+  std::uint64_t file_size() const { return memory_.size(); }
   std::uint64_t checksum() const;
   std::uint32_t format_version() const;
   const fb::WeightsFile& root() const { return *root_; }
@@ -60,19 +66,19 @@ class WeightsFile {
   /// Null when there is none; the only network when `name` is empty and there is just one.
   const fb::Network* FindNetwork(std::string_view name) const;
 
-  /// Tells the operating system that the pages of `view` are not needed soon (mapped files only);
-  /// they are read back from the file when touched again.
-  void GiveBack(const TensorView& view) const;
+  /// What is packed of this file, by whichever model.
+  PackedWeights& packed() const { return *packed_; }
 
  private:
-  WeightsFile() = default;
+  WeightsFile();
   Status Check();
+  Status ReadAndHash(FileScan* scan);
+  Status CheckTensors(const FileScan& scan);
   Status FindScales();
 
   std::string path_;
-  const std::uint8_t* base_ = nullptr;
-  std::uint64_t size_ = 0;
-  bool mapped_ = false;
+  mutable FileMemory memory_;  // mutable: what is packed goes and may come back, under a lock
+  std::unique_ptr<PackedWeights> packed_;
   const fb::WeightsFile* root_ = nullptr;
   std::vector<Entry> tensors_;
 };

@@ -35,7 +35,7 @@ struct KeyTile {
   std::size_t begin, count;  // keys [begin, begin + count)
   const float* keys;         // (head_dim, kKeyStride) transposed
   const float* v;            // (count, value_dim), first row of the tile
-  const float* v_rest;       // (count, GemmTile::kColumns): columns beyond the last whole block
+  const float* v_rest;       // (count, width of a vector): columns beyond the last whole vector
   float* top;                // (rows) running maximum
   float* sum;                // (rows) running sum
 };
@@ -59,7 +59,7 @@ GESTUS_INLINE void score_block(float* scores, const AttentionArgs& args, const K
     for (std::size_t v = 0; v < V; ++v) sum.v[r][v] = Batch<Arch>(0.0f);
   }
   tile_multiply<Arch, R, V, false>(sum, args.q + row_offset(row, args.q_stride), args.q_stride,
-                                   tile.keys + column, kKeyStride, args.head_dim, nullptr);
+                                   tile.keys + column, kKeyStride, args.head_dim, {});
   const Batch<Arch> scale(args.scale);
 #pragma GCC unroll 16
   for (std::size_t r = 0; r < R; ++r) {
@@ -73,17 +73,23 @@ GESTUS_INLINE void score_block(float* scores, const AttentionArgs& args, const K
 /// The largest lane.
 template <class Arch>
 GESTUS_INLINE float largest(const Batch<Arch>& x) {
-  constexpr std::size_t kWidth = Batch<Arch>::size;
-  alignas(64) float lanes[kWidth];
-  x.store_aligned(lanes);
-#pragma GCC unroll 4
-  for (std::size_t half = kWidth / 2; half > 0; half /= 2) {
-#pragma GCC unroll 8
-    for (std::size_t i = 0; i < half; ++i) {
-      lanes[i] = lanes[i] < lanes[i + half] ? lanes[i + half] : lanes[i];
-    }
+#if defined(__AVX512F__)
+  if constexpr (Batch<Arch>::size == 16) return _mm512_reduce_max_ps(x);
+#endif
+#if defined(__AVX__)
+  if constexpr (Batch<Arch>::size == 8) {
+    const __m128 four = _mm_max_ps(_mm256_castps256_ps128(x), _mm256_extractf128_ps(x, 1));
+    return largest<xsimd::sse2>(Batch<xsimd::sse2>(four));
   }
-  return lanes[0];
+#endif
+#if defined(__SSE2__)
+  if constexpr (Batch<Arch>::size == 4) {
+    const __m128 two = _mm_max_ps(x, _mm_movehl_ps(x, x));
+    return _mm_cvtss_f32(_mm_max_ss(two, _mm_shuffle_ps(two, two, 1)));
+  }
+#elif defined(__aarch64__)
+  return vmaxvq_f32(x);
+#endif
 }
 
 /// Turns one row of scores into weights e^(score - maximum) and brings the row's running maximum
@@ -141,7 +147,7 @@ GESTUS_INLINE void value_block(float* out, std::ptrdiff_t out_stride, const floa
       sum.v[r][i] *= Batch<Arch>(factors[r]);
     }
   }
-  tile_multiply<Arch, R, V, false>(sum, weights, kKeyTile, v, v_stride, keys, nullptr);
+  tile_multiply<Arch, R, V, false>(sum, weights, kKeyTile, v, v_stride, keys, {});
 #pragma GCC unroll 16
   for (std::size_t r = 0; r < R; ++r) {
 #pragma GCC unroll 8
@@ -188,9 +194,14 @@ template <class Arch, std::size_t R>
     value_block<Arch, R, kVectors, true>(out + c, args.out_stride, weights, factors, tile.v + c,
                                          args.v_stride, keys, first, 0);
   }
+  constexpr std::size_t kWidth = Batch<Arch>::size;
+  for (; c + kWidth <= args.value_dim; c += kWidth) {
+    value_block<Arch, R, 1, true>(out + c, args.out_stride, weights, factors, tile.v + c,
+                                  args.v_stride, keys, first, 0);
+  }
   if (c < args.value_dim) {
-    value_block<Arch, R, kVectors, false>(out + c, args.out_stride, weights, factors, tile.v_rest,
-                                          kN, keys, first, args.value_dim - c);
+    value_block<Arch, R, 1, false>(out + c, args.out_stride, weights, factors, tile.v_rest, kWidth,
+                                   keys, first, args.value_dim - c);
   }
 }
 
@@ -211,8 +222,7 @@ GESTUS_INLINE void normalise_row(float* out, std::size_t value_dim, float sum) {
 template <class Arch>
 std::size_t f32_attention_scratch(std::size_t rows, std::size_t /*keys*/, std::size_t head_dim,
                                   std::size_t /*value_dim*/) {
-  return head_dim * static_cast<std::size_t>(kKeyStride) + kKeyTile * GemmTile<Arch>::kColumns +
-         2 * rows;
+  return head_dim * static_cast<std::size_t>(kKeyStride) + kKeyTile * Batch<Arch>::size + 2 * rows;
 }
 
 template <class Arch>
@@ -220,7 +230,7 @@ void f32_attention(const AttentionArgs& args) {
   using Tile = GemmTile<Arch>;
   float* keys = args.scratch;
   float* v_rest = keys + row_offset(args.head_dim, kKeyStride);
-  float* top = v_rest + kKeyTile * Tile::kColumns;
+  float* top = v_rest + kKeyTile * Batch<Arch>::size;
   float* sum = top + args.rows;
   for (std::size_t r = 0; r < args.rows; ++r) {
     top[r] = kMinusInfinity;
@@ -229,7 +239,8 @@ void f32_attention(const AttentionArgs& args) {
       args.out[row_offset(r, args.out_stride) + static_cast<std::ptrdiff_t>(c)] = 0.0f;
     }
   }
-  const std::size_t rest = args.value_dim % Tile::kColumns;
+  constexpr std::size_t kWidth = Batch<Arch>::size;
+  const std::size_t rest = args.value_dim % kWidth;
   std::size_t end = args.keys;
   if (args.causal && args.first_row + args.rows < end) end = args.first_row + args.rows;
   for (std::size_t begin = 0; begin < end; begin += kKeyTile) {
@@ -240,8 +251,8 @@ void f32_attention(const AttentionArgs& args) {
     const float* v = args.v + row_offset(begin, args.v_stride);
     for (std::size_t j = 0; j < count && rest > 0; ++j) {
       const float* source = v + row_offset(j, args.v_stride) + (args.value_dim - rest);
-      for (std::size_t c = 0; c < Tile::kColumns; ++c) {
-        v_rest[j * Tile::kColumns + c] = c < rest ? source[c] : 0.0f;
+      for (std::size_t c = 0; c < kWidth; ++c) {
+        v_rest[j * kWidth + c] = c < rest ? source[c] : 0.0f;
       }
     }
     const KeyTile tile{begin, count, keys, v, v_rest, top, sum};

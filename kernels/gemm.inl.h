@@ -80,11 +80,81 @@ template <class Arch>
   });
 }
 
-/// out (R, kColumns) = [out +] a (R, k) * b (k, kColumns)
+/// What a tile of sums ends with before it is stored: the parts of an epilogue that need no more
+/// registers.
+struct TileEnd {
+  const float* bias = nullptr;
+  const float* residual = nullptr;
+  std::ptrdiff_t residual_stride = 0;
+  bool relu = false;
+
+  TileEnd() = default;
+  TileEnd(const Epilogue& epilogue, std::size_t row, std::size_t column) {
+    if (epilogue.bias) bias = epilogue.bias + column;
+    if (!holds(epilogue)) return;
+    relu = epilogue.act == Activation::kRelu;
+    residual_stride = epilogue.residual_stride;
+    if (epilogue.residual)
+      residual = epilogue.residual + row_offset(row, residual_stride) + column;
+  }
+
+  /// Whether nothing but this is left to do.
+  static bool holds(const Epilogue& epilogue) {
+    return epilogue.act == Activation::kNone || epilogue.act == Activation::kRelu;
+  }
+};
+
+/// The rest of an epilogue of which TileEnd is done.
+template <class Arch>
+GESTUS_INLINE void finish_tile(float* out, std::ptrdiff_t out_stride, std::size_t rows,
+                               std::size_t columns, const Epilogue& epilogue, std::size_t row,
+                               std::size_t column) {
+  if (TileEnd::holds(epilogue)) return;
+  Epilogue rest = epilogue;
+  rest.bias = nullptr;
+  finish<Arch>(out, out_stride, rows, columns, rest, row, column);
+}
+
+template <class Arch, std::size_t R, std::size_t V>
+GESTUS_INLINE void end_tile(TileSum<Arch, R, V>& sum, const TileEnd& end) {
+  constexpr std::size_t kWidth = Batch<Arch>::size;
+  if (end.bias) {
+    Batch<Arch> bias[V];
+#pragma GCC unroll 8
+    for (std::size_t v = 0; v < V; ++v) bias[v] = Batch<Arch>::load_unaligned(end.bias + v * kWidth);
+#pragma GCC unroll 16
+    for (std::size_t r = 0; r < R; ++r) {
+#pragma GCC unroll 8
+      for (std::size_t v = 0; v < V; ++v) sum.v[r][v] += bias[v];
+    }
+  }
+  if (end.relu) {
+    const Batch<Arch> alpha(0.0f);
+#pragma GCC unroll 16
+    for (std::size_t r = 0; r < R; ++r) {
+#pragma GCC unroll 8
+      for (std::size_t v = 0; v < V; ++v) {
+        sum.v[r][v] = apply_activation<Activation::kRelu>(sum.v[r][v], alpha);
+      }
+    }
+  }
+  if (end.residual) {
+#pragma GCC unroll 16
+    for (std::size_t r = 0; r < R; ++r) {
+#pragma GCC unroll 8
+      for (std::size_t v = 0; v < V; ++v) {
+        sum.v[r][v] += Batch<Arch>::load_unaligned(
+            end.residual + row_offset(r, end.residual_stride) + v * kWidth);
+      }
+    }
+  }
+}
+
+/// out (R, kColumns) = [out +] a (R, k) * b (k, kColumns), and then `end`
 template <class Arch, std::size_t R>
 [[gnu::noinline]] void gemm_tile(float* out, std::ptrdiff_t out_stride, const float* a,
                                  std::ptrdiff_t a_stride, const float* b, std::size_t k, bool first,
-                                 const float* ahead) {
+                                 const Ahead& ahead, const TileEnd& end) {
   using Tile = GemmTile<Arch>;
   TileSum<Arch, R, Tile::kVectors> sum;
 #pragma GCC unroll 16
@@ -96,6 +166,7 @@ template <class Arch, std::size_t R>
     }
   }
   tile_multiply<Arch, R, Tile::kVectors, true>(sum, a, a_stride, b, Tile::kColumns, k, ahead);
+  end_tile<Arch, R, Tile::kVectors>(sum, end);
 #pragma GCC unroll 16
   for (std::size_t r = 0; r < R; ++r) {
 #pragma GCC unroll 8
@@ -118,7 +189,7 @@ template <class Arch>
     for (std::size_t c = 0; c < columns; ++c) tile[r * Tile::kColumns + c] = source[c];
   }
   with_rows<Tile::kRows>(rows, [&](auto r) {
-    gemm_tile<Arch, r()>(tile, Tile::kColumns, a, a_stride, b, k, first, b);
+    gemm_tile<Arch, r()>(tile, Tile::kColumns, a, a_stride, b, k, first, {}, {});
   });
   for (std::size_t r = 0; r < rows; ++r) {
     float* target = out + row_offset(r, out_stride);
@@ -141,29 +212,33 @@ GESTUS_INLINE void gemm_slice(const GemmArgs& args, const GemmSlice& slice) {
                    slice.k_begin * Tile::kColumns;
   const bool first = slice.k_begin == 0;
   const bool last = slice.k_begin + slice.k == args.k;
-  // Each tile asks for its share of the lines of the next slice, the tiles after that for the lines
-  // at hand, which costs nothing.
-  const std::size_t lines = Tile::kColumns * sizeof(float) * slice.k / 64;
-  const std::size_t ahead_step = slice.k / kTileUnroll * kLinesAhead<Arch>;
-  std::size_t ahead = 0;
+  // The tiles share the lines of the next slice between them.
+  constexpr std::size_t kLineFloats = 64 / sizeof(float);
+  Ahead ahead{slice.next, lines_ahead(Tile::kColumns * kTileUnroll / kLineFloats,
+                                      tiles_of<Arch>(slice.m_end - slice.m_begin))};
   for (std::size_t row = slice.m_begin; row < slice.m_end;) {
     const std::size_t rows = next_tile_rows<Arch>(slice.m_end - row);
     float* out = args.out + row_offset(row, args.out_stride) + slice.column;
     const float* a = args.a + row_offset(row, args.a_stride) + slice.k_begin;
-    const float* ask = ahead < lines ? slice.next + ahead * 16 : b;
-    ahead += ahead_step;
     if (slice.columns == Tile::kColumns) {
+      const TileEnd end = last ? TileEnd(args.epilogue, row, slice.column) : TileEnd();
       with_rows<Tile::kRows>(rows, [&](auto r) {
-        gemm_tile<Arch, r()>(out, args.out_stride, a, args.a_stride, b, slice.k, first, ask);
+        gemm_tile<Arch, r()>(out, args.out_stride, a, args.a_stride, b, slice.k, first, ahead, end);
       });
+      if (last) {
+        finish_tile<Arch>(out, args.out_stride, rows, slice.columns, args.epilogue, row,
+                          slice.column);
+      }
     } else {
       gemm_tile_narrow<Arch>(out, args.out_stride, rows, slice.columns, a, args.a_stride, b,
                              slice.k, first);
-    }
-    if (last) {
-      finish<Arch>(out, args.out_stride, rows, slice.columns, args.epilogue, row, slice.column);
+      if (last) {
+        finish<Arch>(out, args.out_stride, rows, slice.columns, args.epilogue, row, slice.column);
+      }
     }
     row += rows;
+    ahead.from = static_cast<const float*>(ahead.from) +
+                 slice.k / kTileUnroll * ahead.lines * kLineFloats;
   }
 }
 

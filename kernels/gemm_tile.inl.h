@@ -65,11 +65,6 @@ GESTUS_INLINE void prefetch(std::uintptr_t address) {
   __builtin_prefetch(reinterpret_cast<const void*>(address));
 }
 
-/// Cache lines that kTileUnroll steps of a tile ask for.  Larger tiles are fewer, so each has more
-/// of the next panel to ask for: with 62 rows 5 tiles of AVX-512 share 1536 lines, 11 of AVX2 768.
-template <class Arch>
-constexpr std::size_t kLinesAhead = Batch<Arch>::size == 16 ? 4 : 1;
-
 /// Says that x is still needed here.  Without it GCC sees an operand of a multiply-add die, puts
 /// the sum into that register and pays with moves and spills of the whole tile at the end of the
 /// loop.
@@ -114,21 +109,25 @@ constexpr std::size_t kTileUnroll = 1;
 constexpr std::size_t kTileUnroll = 8;
 #endif
 
-/// sum += a (R, k) * b (k, V vectors), rows of b `b_stride` apart.  With kAhead,
-/// every kTileUnroll steps ask for kLinesAhead cache lines, from `ahead` on.
+/// Cache lines that a tile asks for while it computes: `lines` in every kTileUnroll steps.
+struct Ahead {
+  const void* from = nullptr;
+  std::size_t lines = 0;
+};
+
+/// sum += a (R, k) * b (k, V vectors), rows of b `b_stride` apart.
 template <class Arch, std::size_t R, std::size_t V, bool kAhead>
 GESTUS_INLINE void tile_multiply(TileSum<Arch, R, V>& sum, const float* a, std::ptrdiff_t a_stride,
                                  const float* b, std::ptrdiff_t b_stride, std::size_t k,
-                                 const float* ahead) {
+                                 const Ahead& ahead) {
   const float* rows[R];
 #pragma GCC unroll 16
   for (std::size_t r = 0; r < R; ++r) rows[r] = a + row_offset(r, a_stride);
-  std::uintptr_t line = reinterpret_cast<std::uintptr_t>(ahead);
+  std::uintptr_t line = reinterpret_cast<std::uintptr_t>(ahead.from);
   std::size_t i = 0;
-  for (; i + kTileUnroll <= k; i += kTileUnroll, line += 64 * kLinesAhead<Arch>) {
+  for (; i + kTileUnroll <= k; i += kTileUnroll) {
     if constexpr (kAhead) {
-#pragma GCC unroll 8
-      for (std::size_t n = 0; n < kLinesAhead<Arch>; ++n) prefetch(line + 64 * n);
+      for (std::size_t n = ahead.lines; n > 0; --n, line += 64) prefetch(line);
     }
 #pragma GCC unroll 8
     for (std::size_t u = 0; u < kTileUnroll; ++u) {
@@ -146,6 +145,18 @@ GESTUS_INLINE std::size_t next_tile_rows(std::size_t left) {
   constexpr std::size_t kRows = GemmTile<Arch>::kRows;
   if (left >= 2 * kRows || left == kRows) return kRows;
   return left > kRows ? (left + 1) / 2 : left;
+}
+
+/// How many tiles `rows` rows are cut into.
+template <class Arch>
+GESTUS_INLINE std::size_t tiles_of(std::size_t rows) {
+  constexpr std::size_t kRows = GemmTile<Arch>::kRows;
+  return (rows + kRows - 1) / kRows;
+}
+
+/// The share of each of `tiles` tiles in asking for `lines` lines.
+GESTUS_INLINE std::size_t lines_ahead(std::size_t lines, std::size_t tiles) {
+  return (lines + tiles - 1) / tiles;
 }
 
 /// Calls f with `rows` (1..R) as a compile-time constant.

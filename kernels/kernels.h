@@ -98,6 +98,8 @@ struct LstmStepArgs {
   const void* packed = nullptr;   ///< W_hh, packed by the `lstm_pack` of its type
   const float* h_in = nullptr;    ///< (H)
   std::size_t hidden = 0, unit_begin = 0, unit_end = 0;
+  /// From the last block to the first: what the step before read last is still in a near cache.
+  bool backward = false;
   void* scratch = nullptr;  ///< `scratch` bytes for one row of H; float32 weights need none
 };
 

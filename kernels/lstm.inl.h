@@ -108,14 +108,24 @@ GESTUS_INLINE void lstm_finish(const LstmStepArgs& args, std::size_t unit,
   }
 }
 
+/// Calls f(unit) for the first unit of every block, in the order that is asked for.
+template <class Arch, class F>
+GESTUS_INLINE void for_each_block(const LstmStepArgs& args, const F& f) {
+  constexpr std::size_t kW = kLstmBlock<Arch>;
+  const std::size_t blocks = (args.unit_end - args.unit_begin + kW - 1) / kW;
+  for (std::size_t i = 0; i < blocks; ++i) {
+    f(args.unit_begin + kW * (args.backward ? blocks - 1 - i : i));
+  }
+}
+
 template <class Arch>
 void f32_lstm_step(const LstmStepArgs& args) {
   const float* packed = static_cast<const float*>(args.packed);
-  for (std::size_t unit = args.unit_begin; unit < args.unit_end; unit += kLstmBlock<Arch>) {
+  for_each_block<Arch>(args, [&](std::size_t unit) {
     Batch<Arch> gates[kGates];
     lstm_gates<Arch>(gates, packed + unit * kGates * args.hidden, args.h_in, args.hidden);
     lstm_finish<Arch>(args, unit, gates);
-  }
+  });
 }
 
 }  // namespace

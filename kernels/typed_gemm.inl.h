@@ -47,17 +47,14 @@ GESTUS_INLINE void dot_step(DotSums<Dot, R, V>& sums, const typename Dot::Row* c
   }
 }
 
-// As kTileUnroll: a wide vector's group is two cache lines, of which a tile asks half as many
-// again.
+// As kTileUnroll.
 constexpr std::size_t kDotUnroll = kTileUnroll == 1 ? 1 : 4;
-template <class Arch>
-constexpr std::size_t kDotLinesAhead = Batch<Arch>::size == 16 ? 2 : 1;
 
 /// out (R, V vectors) = rows (R, k) * panel (k, V vectors)
 template <class Dot, std::size_t R, std::size_t V>
 [[gnu::noinline]] void dot_tile(float* out, std::ptrdiff_t out_stride, const TypedRows<Dot>& from,
                                 std::size_t first_row, const std::byte* panel, std::size_t k,
-                                const std::byte* ahead) {
+                                const Ahead& ahead, const TileEnd& end) {
   using Arch = typename Dot::Isa;
   constexpr std::size_t kWidth = Batch<Arch>::size, kPitch = V * kWidth * Dot::kBytes;
   DotSums<Dot, R, V> sums;
@@ -69,12 +66,11 @@ template <class Dot, std::size_t R, std::size_t V>
     for (std::size_t v = 0; v < V; ++v) sums.v[r][v] = Dot::zero();
   }
   const std::size_t groups = Dot::kPrepared ? (k + Dot::kGroup - 1) / Dot::kGroup : k / Dot::kGroup;
-  std::uintptr_t line = reinterpret_cast<std::uintptr_t>(ahead);
+  std::uintptr_t line = reinterpret_cast<std::uintptr_t>(ahead.from);
   const std::byte* w = panel;
   std::size_t g = 0;
-  for (; g + kDotUnroll <= groups; g += kDotUnroll, line += kLine * kDotLinesAhead<Arch>) {
-#pragma GCC unroll 2
-    for (std::size_t n = 0; n < kDotLinesAhead<Arch>; ++n) prefetch(line + kLine * n);
+  for (; g + kDotUnroll <= groups; g += kDotUnroll) {
+    for (std::size_t n = ahead.lines; n > 0; --n, line += kLine) prefetch(line);
 #pragma GCC unroll 4
     for (std::size_t u = 0; u < kDotUnroll; ++u, w += kPitch) {
       dot_step<Dot, R, V, 0, Dot::kPhases>(sums, rows, g + u, w);
@@ -84,13 +80,22 @@ template <class Dot, std::size_t R, std::size_t V>
   // A row that is used as it is has no zeros behind it.
   if (!Dot::kPrepared && k % Dot::kGroup != 0) dot_step<Dot, R, V, 0, 1>(sums, rows, g, w);
   const std::byte* trailer = panel + packed_groups<Dot>(k) * kPitch;
+  TileSum<Arch, R, V> result;
 #pragma GCC unroll 16
   for (std::size_t r = 0; r < R; ++r) {
     const float scale = from.scales != nullptr ? from.scales[first_row + r] : 1.0f;
 #pragma GCC unroll 8
     for (std::size_t v = 0; v < V; ++v) {
-      Dot::result(sums.v[r][v], scale, trailer + v * kWidth * sizeof(float), V * kWidth)
-          .store_unaligned(out + row_offset(r, out_stride) + v * kWidth);
+      result.v[r][v] =
+          Dot::result(sums.v[r][v], scale, trailer + v * kWidth * sizeof(float), V * kWidth);
+    }
+  }
+  end_tile<Arch, R, V>(result, end);
+#pragma GCC unroll 16
+  for (std::size_t r = 0; r < R; ++r) {
+#pragma GCC unroll 8
+    for (std::size_t v = 0; v < V; ++v) {
+      result.v[r][v].store_unaligned(out + row_offset(r, out_stride) + v * kWidth);
     }
   }
 }
@@ -198,28 +203,33 @@ GESTUS_INLINE void dot_panel(const GemmArgs& args, const TypedRows<Dot>& rows, s
   using Tile = GemmTile<Arch>;
   const std::size_t left = args.n_end - column;
   const std::size_t columns = left < Tile::kColumns ? left : Tile::kColumns;
-  const std::size_t lines = panel_bytes<Dot>(Tile::kColumns, args.k) / kLine;
-  const std::size_t ahead_step =
-      (args.k + Dot::kGroup - 1) / Dot::kGroup / kDotUnroll * kDotLinesAhead<Arch>;
-  std::size_t ahead = 0;
+  Ahead ahead{next, lines_ahead(Tile::kColumns * Dot::kBytes * kDotUnroll / kLine,
+                                tiles_of<Arch>(m_end - m_begin))};
   for (std::size_t row = m_begin; row < m_end;) {
     const std::size_t count = next_tile_rows<Arch>(m_end - row);
     float* out = args.out + row_offset(row, args.out_stride) + column;
-    const std::byte* ask = ahead < lines ? next + ahead * kLine : panel;
-    ahead += ahead_step;
-    alignas(64) float tile[Tile::kRows * Tile::kColumns];
-    const bool narrow = columns < Tile::kColumns;
-    with_rows<Tile::kRows>(count, [&](auto r) {
-      dot_tile<Dot, r(), Tile::kVectors>(narrow ? tile : out,
-                                         narrow ? Tile::kColumns : args.out_stride, rows,
-                                         row - m_begin, panel, args.k, ask);
-    });
-    for (std::size_t r = 0; narrow && r < count; ++r) {
-      std::memcpy(out + row_offset(r, args.out_stride), tile + r * Tile::kColumns,
-                  columns * sizeof(float));
+    if (columns == Tile::kColumns) {
+      const TileEnd end(args.epilogue, row, column);
+      with_rows<Tile::kRows>(count, [&](auto r) {
+        dot_tile<Dot, r(), Tile::kVectors>(out, args.out_stride, rows, row - m_begin, panel, args.k,
+                                           ahead, end);
+      });
+      finish_tile<Arch>(out, args.out_stride, count, columns, args.epilogue, row, column);
+    } else {
+      alignas(64) float tile[Tile::kRows * Tile::kColumns];
+      with_rows<Tile::kRows>(count, [&](auto r) {
+        dot_tile<Dot, r(), Tile::kVectors>(tile, Tile::kColumns, rows, row - m_begin, panel, args.k,
+                                           ahead, {});
+      });
+      for (std::size_t r = 0; r < count; ++r) {
+        std::memcpy(out + row_offset(r, args.out_stride), tile + r * Tile::kColumns,
+                    columns * sizeof(float));
+      }
+      finish<Arch>(out, args.out_stride, count, columns, args.epilogue, row, column);
     }
-    finish<Arch>(out, args.out_stride, count, columns, args.epilogue, row, column);
     row += count;
+    ahead.from = static_cast<const std::byte*>(ahead.from) +
+                 packed_groups<Dot>(args.k) / kDotUnroll * ahead.lines * kLine;
   }
 }
 

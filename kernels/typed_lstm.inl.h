@@ -49,7 +49,7 @@ void typed_lstm_step(const LstmStepArgs& args) {
   const std::size_t groups = packed_groups<Dot>(args.hidden);
   const TypedRows<Dot> h = prepare_rows<Dot>(args.scratch, args.h_in, 0, 1, args.hidden);
   const float scale = h.scales != nullptr ? h.scales[0] : 1.0f;
-  for (std::size_t unit = args.unit_begin; unit < args.unit_end; unit += kW) {
+  for_each_block<Arch>(args, [&](std::size_t unit) {
     const std::byte* panel = static_cast<const std::byte*>(args.packed) + unit / kW * bytes;
     const std::byte* trailer = panel + kGates * kW * groups * Dot::kBytes;
     typename Dot::Sum sums[kGates];
@@ -60,7 +60,7 @@ void typed_lstm_step(const LstmStepArgs& args) {
       gates[g] = Dot::result(sums[g], scale, trailer + g * kW * sizeof(float), kGates * kW);
     }
     lstm_finish<Arch>(args, unit, gates);
-  }
+  });
 }
 
 }  // namespace

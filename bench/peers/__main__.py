@@ -15,7 +15,7 @@ import sys
 from . import chart, machine, page
 from .cases import CASES
 from .measure import call_seconds, measure_case
-from .workers import Peak, engines
+from .workers import TYPES, Peak, engines
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
@@ -25,7 +25,7 @@ def main(arguments=None):
     known = {case.name: case for case in CASES}
     cases = [known[name] for name in options.cases]
     available, absent = _engines(options)
-    _export(options.folder, cases)
+    _export(options, cases)
     results = _collect(options, cases, available, absent)
     options.folder.joinpath("results.json").write_text(json.dumps(results))
     for path, text in ((options.page, page.render(results)), (options.chart, chart.render(results))):
@@ -39,7 +39,7 @@ def _parser():
     parser = argparse.ArgumentParser(prog="./run peers", description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     names = [case.name for case in CASES]
-    parser.add_argument("--rounds", type=_count, default=15, help="default %(default)s")
+    parser.add_argument("--rounds", type=_count, default=15, help="default %(default)s, fewer where runs are long")
     parser.add_argument("--starts", type=_count, default=3,
                         help="processes started for each load time (default %(default)s)")
     parser.add_argument("--cases", nargs="+", choices=names, default=names, metavar="CASE",
@@ -47,6 +47,8 @@ def _parser():
     parser.add_argument("--engines", nargs="+", choices=("gestus", "ort", "torch"),
                         default=["gestus", "ort", "torch"], metavar="ENGINE",
                         help="gestus, ort, torch")
+    parser.add_argument("--types", nargs="+", choices=TYPES, default=list(TYPES), metavar="TYPE",
+                        help=", ".join(TYPES))
     parser.add_argument("--threads", type=_count, default=2, metavar="N",
                         help="run with 1 and with N threads (default %(default)s)")
     parser.add_argument("--folder", type=pathlib.Path, default=pathlib.Path("out/peers"),
@@ -87,11 +89,15 @@ def _engines(options):
     return available, absent
 
 
-def _export(folder, cases):
-    """In a process of its own: this one stays small, and without PyTorch."""
-    missing = [case.name for case in cases if not (folder / case.name / "case.json").exists()]
+def _export(options, cases):
+    """In processes of their own: this one stays small, and without PyTorch."""
+    folder, names = options.folder, [case.name for case in cases]
+    missing = [name for name in names if not (folder / name / "case.json").exists()]
     if missing or not (folder / "nothing" / "case.json").exists():
         subprocess.run([sys.executable, "-m", "bench.peers.export", folder.resolve(), *missing],
+                       cwd=ROOT, check=True)
+    if options.types != ["fp32"]:
+        subprocess.run([sys.executable, "-m", "bench.peers.narrow", folder.resolve(), *names],
                        cwd=ROOT, check=True)
 
 
@@ -104,19 +110,21 @@ def _collect(options, cases, available, absent):
                "titles": {e.name: e.title for e in engines(options.programs, modules).values()},
                "chart": options.chart.name}
     with Peak(options.programs.resolve()) as peak:
-        results["isa"] = peak.isa
+        results["isa"], results["instructions"] = peak.isa, peak.instructions
         for case in cases:
             say(f"measuring {case.title}")
             results["busy"] = max(results["busy"], machine.busy_share())
             folder = (options.folder / case.name).resolve()
             flops = json.loads((folder / "case.json").read_text())["flops"]
-            measured = measure_case(folder, available, threads, peak, options.rounds, options.starts)
+            measured, rounds = measure_case(folder, available, options.types, threads, peak,
+                                            options.rounds, options.starts)
             for result in measured:
                 if "failed" in result:
                     say(f"{result['engine']} {result['type']}: {result['failed']}")
             results["cases"].append({"name": case.name, "title": case.title, "flops": flops,
-                                     "results": measured})
-        results["peak"] = [min(peak.seen), max(peak.seen)]
+                                     "rounds": rounds, "results": measured})
+        results["peak"] = {kind: [min(seen[kind] for seen in peak.seen),
+                                  max(seen[kind] for seen in peak.seen)] for kind in TYPES}
     if "ort" not in absent:
         ort = next(engine for engine in available if engine.name == "ort")
         results["call_seconds"] = call_seconds((options.folder / "nothing").resolve(), ort)

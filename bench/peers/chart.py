@@ -1,5 +1,6 @@
-"""The results as a picture: for every network the share of one core's peak that each engine reaches
-with one thread, its time beside the bar.  Follows the reader's light or dark scheme."""
+"""The results as a picture: for every network the share of one core's fp32 peak that each engine
+and type of number reaches with one thread, its time beside the bar.  Follows the reader's light or
+dark scheme."""
 
 from html import escape
 
@@ -17,6 +18,7 @@ text { font-family: system-ui, 'Segoe UI', 'DejaVu Sans', sans-serif; font-size:
 .title { fill: #1f2328; font-weight: 600; font-size: 16px }
 .back { fill: #ffffff } .grid { stroke: #d0d7de } .limit { stroke: #57606a; stroke-dasharray: 4 3 }
 .gestus { fill: #0a7d5a } .ort { fill: #6e7fa3 } .torch { fill: #d98841 }
+.bf16 { opacity: 0.75 } .int8 { opacity: 0.5 }
 @media (prefers-color-scheme: dark) {
 text { fill: #9198a1 } .strong, .title { fill: #f0f6fc } .back { fill: #0d1117 }
 .grid { stroke: #30363d } .limit { stroke: #9198a1 }
@@ -32,7 +34,7 @@ def render(results):
     scale = (WIDTH - LEFT - RIGHT) / most
     out = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {height}" width="{WIDTH}" '
            f'height="{height}">',
-           "<title>Share of one core's fp32 peak by network and engine, one thread</title>", _STYLE,
+           "<title>Share of one core's fp32 peak by network, engine and type, one thread</title>", _STYLE,
            f'<rect class="back" width="{WIDTH}" height="{height}"/>',
            _text(20, 28, "One thread: share of one core's measured fp32 peak, and the time of a run",
                  "title"), *_legend(results), *_axis(most, scale, height)]
@@ -44,10 +46,9 @@ def render(results):
         out.append(_text(LEFT - 12, middle + LINE, size, anchor="end"))
         for engine, kind, share, median in bars:
             width = max(1.0, share * scale)
-            out.append(f'<rect class="{engine}" x="{LEFT}" y="{y + 1}" width="{width:.1f}" '
+            out.append(f'<rect class="{engine} {kind}" x="{LEFT}" y="{y + 1}" width="{width:.1f}" '
                        f'height="{BAR - 2}" rx="2"/>')
-            label = _time(median) + ("" if kind == "fp32" else f"  {kind}")
-            out.append(_text(LEFT + width + 6, y + BAR - 3.5, label))
+            out.append(_text(LEFT + width + 6, y + BAR - 3.5, f"{kind}  {_time(median)}"))
             y += BAR
         y += GAP + BAR * max(0, 2 - len(bars))
     return "\n".join(out + ["</svg>", ""])
@@ -58,7 +59,7 @@ def _bars(case):
     for result in case["results"]:
         found = summary(result, 1)
         if found is not None:
-            bars.append((result["engine"], result["type"], found["share"], found["median"]))
+            bars.append((result["engine"], result["type"], found["share_fp32"], found["median"]))
     return bars
 
 

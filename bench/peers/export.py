@@ -5,7 +5,7 @@ usage: python3 -m bench.peers.export FOLDER CASE...   -> FOLDER/<case>/
   <input>.bin  expected.bin                       raw values; expected is PyTorch's in double
   case.json                                       inputs, floating-point operations
 
-Other types are run too where their files stand beside these, such as gestus.int8.fb.
+narrow.py makes other types of these.
 """
 
 import json
@@ -59,9 +59,9 @@ def export(folder, case):
     folder.mkdir(parents=True, exist_ok=True)
     weights_file.write(folder / "gestus.fp32.fb", [network], arrays,
                        {"trained": False, "recipe": f"random, seed {SEED}"})
+    save_traced(module, tensors, folder / "torch.fp32.pt")
     with warnings.catch_warnings(), torch.no_grad():
         warnings.simplefilter("ignore")  # of shapes that become constants, as they should
-        torch.jit.save(_traced(module, tensors), str(folder / "torch.fp32.pt"))
         torch.onnx.export(module, tensors, str(folder / "ort.fp32.onnx"), opset_version=OPSET,
                           input_names=list(inputs))
     for name, x in inputs.items():
@@ -79,15 +79,18 @@ def _describe(folder, inputs, flops):
         "inputs": {name: {"shape": x.shape, "type": str(x.dtype)} for name, x in inputs.items()}}))
 
 
-def _traced(module, tensors):
+def save_traced(module, tensors, path):
     """Traced with the sizes as constants, so that nothing is computed from them when it runs."""
-    traced = torch.jit.trace(module, tensors)
+    with warnings.catch_warnings(), torch.no_grad():
+        warnings.simplefilter("ignore")  # of shapes that become constants, as they should
+        module(*tensors)  # what fix_constants remembers is no part of the trace
+        traced = torch.jit.trace(module, tensors, check_trace=False)  # outputs are compared
     graph = traced.graph
     torch._C._jit_pass_inline(graph)
     torch._C._jit_pass_peephole(graph, False)
     torch._C._jit_pass_constant_propagation(graph)
     torch._C._jit_pass_dce(graph)
-    return traced
+    torch.jit.save(traced, str(path))
 
 
 def export_nothing(folder):

@@ -7,7 +7,6 @@ import numpy as np
 
 from .workers import Worker, WorkerError
 
-TYPES = ("fp32", "bf16", "int8")
 # Largest difference from PyTorch in double that still counts as the same output, as a share of the
 # largest value.  What differs by more gets no time.
 LIMITS = {"fp32": 1e-4, "bf16": 0.03, "int8": 0.1}
@@ -17,6 +16,11 @@ BURST_RUNS = 100       # at most
 WARM_SECONDS = 0.3     # shorter runs follow one that does not count, after others had the caches
 SETTLE_SECONDS = 0.03  # for threads of the one before that still spin
 
+# Networks whose runs are long get fewer rounds and starts, so that all of them end in time.
+ROUNDS_SECONDS = 75
+LEAST_ROUNDS = 5
+STARTS_SECONDS = 30
+
 
 def call_seconds(folder, engine):
     """What a run of a model that computes nothing takes: the price of asking."""
@@ -25,26 +29,27 @@ def call_seconds(folder, engine):
         return float(np.median(worker.run(BURST_RUNS)))
 
 
-def jobs(folder, engines):
+def jobs(folder, engines, types):
     """(engine, type) of every model file that the case has."""
-    return [(engine, kind) for kind in TYPES for engine in engines
+    return [(engine, kind) for kind in types for engine in engines
             if engine.model(folder, kind) is not None]
 
 
-def measure_case(folder, engines, threads, peak, rounds, starts):
-    """Results of every job: dictionaries that page.py and chart.py read.  `peak` is a Peak."""
+def measure_case(folder, engines, types, threads, peak, rounds, starts):
+    """Results of every job, dictionaries that page.py and chart.py read, and how many rounds there
+    were.  `peak` is a Peak."""
     description = json.loads((folder / "case.json").read_text())
     expected = np.fromfile(folder / "expected.bin", np.float32)
-    results = {job: _empty(folder, *job) for job in jobs(folder, engines)}
+    results = {job: _empty(folder, *job) for job in jobs(folder, engines, types)}
     workers = _start_all(folder, results, threads, starts)
     try:
-        _rounds(workers, results, description["flops"], peak, rounds)
+        rounds = _rounds(workers, results, description["flops"], peak, rounds)
         for (job, count), worker in workers.items():
             _finish(results[job], count, worker, expected)
     finally:
         for worker in workers.values():
             worker.close()
-    return list(results.values())
+    return list(results.values()), rounds
 
 
 def _empty(folder, engine, kind):
@@ -54,33 +59,42 @@ def _empty(folder, engine, kind):
 
 def _start_all(folder, results, threads, starts):
     """(job, threads) -> Worker.  One thread is started several times, in turns, for the load time."""
-    workers = {}
-    order = [(job, threads[0]) for _ in range(starts) for job in results]
-    order += [(job, count) for count in threads[1:] for job in results]
-    for job, count in order:
-        if "failed" in results[job]:
-            continue
-        if (job, count) in workers:
-            workers.pop((job, count)).close()
-        try:
-            worker = workers[job, count] = Worker(job[0], folder, job[1], count)
-        except WorkerError as error:
-            results[job]["failed"] = str(error)
-            continue
-        if count == threads[0]:
-            results[job]["load_seconds"].append(worker.load_seconds)
+    workers, begin = {}, time.monotonic()
+    for number in range(starts):
+        if number == 0 or time.monotonic() - begin < STARTS_SECONDS:
+            for job, result in results.items():
+                if _start(workers, folder, results, job, threads[0]):
+                    result["load_seconds"].append(workers[job, threads[0]].load_seconds)
+    for count in threads[1:]:
+        for job in results:
+            _start(workers, folder, results, job, count)
     return workers
 
 
+def _start(workers, folder, results, job, count):
+    """Whether that worker, in place of the one before it, could be started."""
+    if (job, count) in workers:
+        workers.pop((job, count)).close(kill=True)
+    if "failed" not in results[job]:
+        try:
+            workers[job, count] = Worker(job[0], folder, job[1], count)
+            return True
+        except WorkerError as error:
+            results[job]["failed"] = str(error)
+    return False
+
+
 def _rounds(workers, results, flops, peak, rounds):
-    """Every worker once a round, each round beginning with another one."""
+    """Every worker once a round, each round beginning with another one; how many rounds."""
     alone = {}  # seconds of a run
     for key, worker in workers.items():
-        results[key[0]]["threads"][key[1]] = {"seconds": [], "gflops": [], "share": []}
+        results[key[0]]["threads"][key[1]] = {"seconds": [], "gflops": [], "share": [],
+                                              "share_fp32": []}
         alone[key] = min(_asked(results[key[0]], worker, 2))
     keys = list(workers)
+    rounds = min(rounds, max(LEAST_ROUNDS, int(ROUNDS_SECONDS / max(1e-9, _round_seconds(alone)))))
     for number in range(rounds):
-        top = peak.gflops()
+        top = peak.gops()
         first = number % max(1, len(keys))
         for key in keys[first:] + keys[:first]:
             result = results[key[0]]
@@ -91,7 +105,15 @@ def _rounds(workers, results, flops, peak, rounds):
             measured = result["threads"][key[1]]
             measured["seconds"] += times
             measured["gflops"].append(flops / float(np.median(times)) * 1e-9)
-            measured["share"].append(measured["gflops"][-1] / (top * key[1]))
+            for name, kind in (("share", key[0][1]), ("share_fp32", "fp32")):
+                measured[name].append(measured["gflops"][-1] / (top[kind] * key[1]))
+    return rounds
+
+
+def _round_seconds(alone):
+    """About what a round takes when a run takes what `alone` says (infinite: it failed)."""
+    return sum((x if x >= WARM_SECONDS else 2 * max(x, BURST_SECONDS)) + SETTLE_SECONDS
+               for x in alone.values() if np.isfinite(x))
 
 
 def _burst(seconds):
@@ -132,11 +154,11 @@ def _difference(output, expected):
 
 
 def summary(result, threads):
-    """median and p99 seconds, GFLOP/s and share of the peak of one thread count, or None."""
+    """median and p99 seconds, GFLOP/s and shares of the type's peak and of fp32's with that many
+    threads, or None."""
     measured = result["threads"].get(threads)
     if not measured or "failed" in result:
         return None
     return {"median": float(np.median(measured["seconds"])),
             "p99": float(np.quantile(measured["seconds"], 0.99, method="higher")),
-            "gflops": float(np.median(measured["gflops"])),
-            "share": float(np.median(measured["share"]))}
+            **{name: float(np.median(measured[name])) for name in ("gflops", "share", "share_fp32")}}

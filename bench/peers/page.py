@@ -3,6 +3,7 @@
 import numpy as np
 
 from .measure import summary
+from .workers import NARROW
 
 BUSY = 0.05  # above this share of the machine for others, times mean little
 
@@ -23,11 +24,22 @@ _HEAD = """\
 _NOTES = """
 Times are milliseconds of one run at batch 1, medians of {runs}; p99 of few runs is the slowest of them.
 GFLOP/s count the multiplications and additions of the products and convolutions of the whole network,
-the same for every engine, whether an engine does them all or not; shares are of {isa}'s fp32
-peak of one core, measured anew in every round, times the threads.  Resident is the highest resident
-memory of a process that has run just that model; load is from the start of that process to its first
-output, with everything in the page cache.  "differs" is the largest difference from PyTorch in
-double, as a share of the largest value.
+the same for every engine, whether an engine does them all or not, and in every type.  Shares are of
+one core's peak, measured anew in every round, times the threads: {peaks}.
+"to gestus" is how many times as long as gestus it takes with one thread, in the same type.  Resident is
+the highest resident memory of a process that has run just that model; load is from the start of that
+process to its first output, with everything in the page cache.  "differs" is the largest difference
+from PyTorch in double, as a share of the largest value; the weights are random.
+
+What the types are:
+
+- gestus, bf16 and int8: every matrix that a product reads and every embedding, int8 with a scale for
+  each output channel; no module stays wider.
+- ONNX Runtime, int8: products, LSTMs and embeddings, quantised dynamically as its own tool does
+  (`bench/peers/ort_int8.py`), per output channel; convolutions stay fp32.  Its kernels for
+  processors know no bf16.
+- PyTorch, bf16: the whole module.  int8: `quantize_dynamic` of linear layers (per output channel) and
+  LSTMs, with the engine that its package chooses (Debian's: oneDNN); the rest stays fp32.
 """
 
 
@@ -37,7 +49,7 @@ def render(results):
     lines = [_HEAD.format(machine=results["machine"] + ".", conditions=_conditions(results),
                           chart=results["chart"]), _table(results, count), ""]
     lines.append(_engines(results))
-    lines.append(_NOTES.format(runs=_run_counts(results), isa=results["isa"]))
+    lines.append(_NOTES.format(runs=_run_counts(results), peaks=_peaks(results)))
     if "call_seconds" in results:
         lines.append(f"A call of ONNX Runtime from Node that computes nothing takes "
                      f"{1e6 * results['call_seconds']:.0f} us, which its times hold.\n")
@@ -45,12 +57,29 @@ def render(results):
 
 
 def _conditions(results):
-    text = (f"{results['date']}, {results['rounds']} rounds, peak of one core "
-            f"{results['peak'][0]:.0f} to {results['peak'][1]:.0f} GFLOP/s ({results['isa']}).")
+    text = f"{results['date']}, {results['rounds']} rounds{_fewer(results)}, {results['isa']}, peak of " \
+           "one core " + ", ".join(
+               f"{kind} {low:.0f} to {high:.0f}" for kind, (low, high) in results["peak"].items()
+           ) + " GFLOP/s."
     if results["busy"] > BUSY:
         text += (f"  **Others took up to {results['busy']:.0%} of the machine meanwhile: these "
                  "figures show only that the comparison works.**")
     return text
+
+
+def _fewer(results):
+    said = [f"{case['title']}: {case['rounds']}" for case in results["cases"]
+            if case["rounds"] < results["rounds"]]
+    return f" ({'; '.join(said)})" if said else ""
+
+
+def _peaks(results):
+    """Which peak the shares of each type are of."""
+    said = [f"fp32's of {results['isa']}"]
+    for kind in NARROW:
+        name = results["instructions"].get(kind)
+        said.append(f"{kind}'s of {name}" if name else f"for {kind} fp32's too")
+    return ", ".join(said)
 
 
 def _run_counts(results):
@@ -60,7 +89,7 @@ def _run_counts(results):
 
 
 def _table(results, count):
-    head = ["network", "engine", "type", "median", "p99", "GFLOP/s", "of peak"]
+    head = ["network", "engine", "type", "median", "p99", "to gestus", "GFLOP/s", "of peak"]
     if count > 1:
         head += [f"{count} threads", "p99", "of peak", "speed-up"]
     head += ["resident", "load", "file", "differs"]
@@ -68,7 +97,7 @@ def _table(results, count):
     for case in results["cases"]:
         title = f"{case['title']} ({_work(case['flops'])})"
         for result in case["results"]:
-            rows.append([title] + _row(result, results, count))
+            rows.append([title] + _row(result, results, count, _of_gestus(case, result["type"])))
             title = ""
     return "\n".join("| " + " | ".join(row) + " |" for row in rows)
 
@@ -77,13 +106,21 @@ def _work(flops):
     return f"{flops * 1e-9:.3g} GFLOP" if flops >= 1e8 else f"{flops * 1e-6:.3g} MFLOP"
 
 
-def _row(result, results, count):
+def _of_gestus(case, kind):
+    """gestus' median of one thread, or None."""
+    found = [summary(result, 1) for result in case["results"]
+             if result["engine"] == "gestus" and result["type"] == kind]
+    return found[0]["median"] if found and found[0] else None
+
+
+def _row(result, results, count, gestus):
     name = [results["titles"][result["engine"]], result["type"]]
     one, many = summary(result, 1), summary(result, count)
     blanks = 4 if count > 1 else 0
     if one is None:
-        return name + [result.get("failed", "not run")] + ["-"] * (7 + blanks)
-    times = [_ms(one["median"]), _ms(one["p99"]), f"{one['gflops']:.3g}", f"{one['share']:.0%}"]
+        return name + [result.get("failed", "not run")] + ["-"] * (8 + blanks)
+    times = [_ms(one["median"]), _ms(one["p99"]), f"{one['median'] / gestus:.2f}" if gestus else "-",
+             f"{one['gflops']:.3g}", f"{one['share']:.0%}"]
     if count > 1:
         times += ["-"] * 4 if many is None else [
             _ms(many["median"]), _ms(many["p99"]), f"{many['share']:.0%}",

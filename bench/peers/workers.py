@@ -17,6 +17,8 @@ import time
 import numpy as np
 
 HERE = pathlib.Path(__file__).parent
+NARROW = ("bf16", "int8")
+TYPES = ("fp32", *NARROW)
 
 
 class WorkerError(Exception):
@@ -97,7 +99,10 @@ class Pipe:
             pass  # the answer says why
         return self.answer()
 
-    def close(self):
+    def close(self, kill=False):
+        """Waits for the process to end, or ends it whatever it does."""
+        if kill:
+            self.process.kill()
         try:
             self.process.stdin.close()
         except BrokenPipeError:
@@ -162,13 +167,17 @@ def _stripped_bytes(path):
 
 
 class Peak(Pipe):
-    """One core's fp32 peak, measured whenever it is asked for."""
+    """One core's peak for each type of number, measured whenever it is asked for."""
 
     def __init__(self, programs):
         super().__init__([programs / "gestus_peak"], 1)
-        self.isa = self.answer()
+        self.isa, *names = self.answer().split()
+        # Of the types that have products of their own; the others' peak is that of fp32.
+        self.instructions = {kind: name for kind, name in zip(NARROW, names) if name != "-"}
         self.seen = []
 
-    def gflops(self):
-        self.seen.append(float(self.ask("")))
+    def gops(self):
+        """Type -> 10^9 operations a second."""
+        fp32, *narrow = map(float, self.ask("").split())
+        self.seen.append({"fp32": fp32} | {kind: x or fp32 for kind, x in zip(NARROW, narrow)})
         return self.seen[-1]

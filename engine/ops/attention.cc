@@ -5,7 +5,8 @@
 namespace gestus {
 namespace {
 
-constexpr std::size_t kQueryBlock = 128;
+// Each block turns all keys round once more, which 256 rows make small.
+constexpr std::size_t kQueryBlock = 256;
 
 class AttentionOp final : public BoundOp {
  public:

@@ -53,6 +53,7 @@ class LstmOp final : public BoundOp {
         args.h_in = h;
         args.h_out = out_.at(b, t);
         args.x_proj = proj_.at(b, t);
+        args.backward = i % 2 != 0;
         if (!units.empty()) step_(args);
         worker.Meet();
         h = args.h_out;

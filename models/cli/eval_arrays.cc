@@ -8,8 +8,10 @@
 #include "models/cli/finish.h"
 #include "models/cli/npy.h"
 #include "models/cli/npz.h"
+#include "models/io/text.h"
 #include "models/motion/clip.h"
 #include "models/motion/joints.h"
+#include "models/motion/resample.h"
 #include "weights_generated.h"
 
 namespace gestus::cli {
@@ -209,27 +211,72 @@ void AddCurves(const Arrays& arrays, const std::vector<ArrayLayout>& layouts, Se
   }
 }
 
+/// `values` (frames, coordinates * points) at another rate.
+Status Resample(std::int64_t points, std::int64_t coordinates, std::int64_t frames, double from,
+                double to, std::vector<float>* values) {
+  motion::Track track(std::vector<std::string>(static_cast<std::size_t>(points)), coordinates,
+                      frames, from);
+  track.values = std::move(*values);
+  Result<motion::Track> resampled = motion::Resample(track, to);
+  if (!resampled.ok()) return resampled.status();
+  *values = std::move(resampled->values);
+  return Status();
+}
+
+/// Everything of `sequence` at the rate `wanted`; of curves only those that go on from the first
+/// frame to the last: words and windows have their places in frames.
+Status BringTo(double wanted, const std::string& path, Sequence* sequence,
+               std::vector<std::string>* notes) {
+  outputs::Motion& motion = sequence->motion;
+  const double own = motion.frame_rate;
+  if (wanted <= 0 || motion.frames == 0 || std::abs(own / wanted - 1) <= 1e-3) return Status();
+  for (EvalChannel& channel : sequence->channels) {
+    if (sequence->timed || channel.stretches.size() != 1)
+      return Status(Code::kBadInput, "curves at " + Significant(own, 4) +
+                                         " frames per second, expected " + Significant(wanted, 4) +
+                                         " as the first prediction has");
+    std::vector<float>& values = channel.stretches[0].values;
+    GESTUS_RETURN_IF_ERROR(Resample(1, 1, std::ssize(values), own, wanted, &values));
+    motion.frames = std::ssize(values);
+  }
+  for (auto* figure : {&motion.body, &motion.face}) {
+    if (!*figure) continue;
+    const std::int64_t points = std::ssize((*figure)->points);
+    const std::int64_t frames = std::ssize((*figure)->values) / (2 * points);
+    GESTUS_RETURN_IF_ERROR(Resample(points, 2, frames, own, wanted, &(*figure)->values));
+    motion.frames = std::ssize((*figure)->values) / (2 * points);
+  }
+  motion.frame_rate = wanted;
+  notes->push_back(path + ": resampled from " + Significant(own, 4) + " to " +
+                   Significant(wanted, 4) + " frames per second");
+  return Status();
+}
+
 }  // namespace
 
 Result<Sequence> ReadMotionArrays(const std::string& path, const std::vector<ArrayLayout>& layouts,
-                                  double rate, std::vector<std::string>* notes) {
+                                  double declared, double wanted, std::vector<std::string>* notes) {
   Result<Arrays> arrays = Read(path);
   if (!arrays.ok()) return arrays.status();
   double finished = 0;
   GESTUS_RETURN_IF_ERROR(TakeFinished(&*arrays, &finished).In(path));
-  if (rate <= 0) rate = finished;
+  const auto rate_or = [&](double usual) {
+    return finished > 0 ? finished : declared > 0 ? declared : usual;
+  };
   Sequence sequence;
   const auto face = arrays->find("face");
   if (face != arrays->end() && face->second.shape.size() == 3) {
-    sequence.motion.frame_rate = rate > 0 ? rate : kCurveRate;
+    sequence.motion.frame_rate = rate_or(kCurveRate);
     GESTUS_RETURN_IF_ERROR(CheckCurves(*arrays, sequence.motion.frame_rate).In(path));
     AddCurves(*arrays, layouts, &sequence);
+    GESTUS_RETURN_IF_ERROR(BringTo(wanted, path, &sequence, notes).In(path));
     return sequence;
   }
   const ArrayLayout& layout = PoseLayout(layouts, *arrays);
   const double own = layout.network == nullptr ? kPoseRate : layout.spec.frame_rate;
-  sequence.motion.frame_rate = rate > 0 ? rate : own;
+  sequence.motion.frame_rate = rate_or(own);
   GESTUS_RETURN_IF_ERROR(AddPoints(*arrays, layout, &sequence, notes).In(path));
+  GESTUS_RETURN_IF_ERROR(BringTo(wanted, path, &sequence, notes).In(path));
   return sequence;
 }
 

@@ -46,6 +46,7 @@ svg rect{stroke:none}svg polyline{fill:none!important;stroke-width:1.6}svg polyl
 .scroll{overflow-x:auto}table{border-collapse:collapse;font-size:.9rem;width:100%}
 th,td{text-align:left;padding:.25rem .6rem;border-bottom:1px solid var(--rule);white-space:nowrap}
 td.n,th.n{text-align:right;font-variant-numeric:tabular-nums}
+summary{cursor:pointer;padding:.3rem 0}
 .note{color:var(--soft)}.warning{color:var(--source);font-weight:600}
 </style></head><body>
 <button type="button" onclick="const r=document.documentElement,
@@ -120,7 +121,10 @@ std::string DistanceChart(const Scores& all) {
          BarChart(
              "Distances to the target speaker's style, in percent of both together "
              "(equation 6.9, as in Figures 6.4 and 6.5)",
-             "%", BehaviourLabels(), {source, prediction}, 50.0);
+             "%", BehaviourLabels(), {source, prediction}, 50.0) +
+         "<p class=\"note\">On the dashed line both are as far from the target. A prediction that "
+         "has "
+         "taken on the target's style is far below it.</p>\n";
 }
 
 /// Every role in percent of the largest, because units differ.
@@ -230,10 +234,13 @@ std::string EvalReport::Html() const {
   const Scores& all = evaluation.pooled;
   std::string html = kPageHead + Summary(*this) + DistanceChart(all) + BehaviourChart(all) +
                      CurveCharts(all) + Overlays(*this);
+  const std::size_t rows = FiguresOf(all).size();
+  constexpr std::size_t kMostRows = 60;  // more are shown when one asks for them
   html += "<h2>All figures</h2>\n<p class=\"note\">Median of " +
           std::to_string(arguments.eval.median) + " over curves, Minkowski distances of order " +
-          Fixed(arguments.eval.order, 1) + ", action units active above 0.5.</p>\n" +
-          FiguresTable(all);
+          Fixed(arguments.eval.order, 1) + ", action units active above 0.5.</p>\n" + "<details" +
+          (rows > kMostRows ? "" : " open") + "><summary>" + Count(rows, "figure") +
+          "</summary>\n" + FiguresTable(all) + "</details>\n";
   constexpr std::size_t kMostSequences = 40;
   if (evaluation.sequences.size() > 1) {
     for (std::size_t i = 0; i < std::min(kMostSequences, evaluation.sequences.size()); ++i)

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "models/cli/eval_columns.h"
+#include "models/io/text.h"
 #include "models/metrics/error.h"
 #include "models/metrics/points.h"
 #include "models/motion/clean.h"
@@ -241,10 +242,10 @@ class Pool {
     if (points == 0) return;
     const std::int64_t frames = std::min(a.frames, b.frames);
     if (a.frames != b.frames)
-      material_->notes.push_back(PredictionOf(one).path + ": has " + std::to_string(a.frames) +
-                                 " frames, its " + kRoleNames[role] + " " +
-                                 std::to_string(b.frames) + "; the first " +
-                                 std::to_string(frames) + " were compared");
+      material_->notes.push_back(PredictionOf(one).path + ": has " +
+                                 Count(static_cast<std::uint64_t>(a.frames), "frame") + ", its " +
+                                 kRoleNames[role] + " " + std::to_string(b.frames) +
+                                 "; the first " + std::to_string(frames) + " were compared");
     const auto predicted = metrics::Coordinates(a, frames, joints, landmarks);
     const auto other = metrics::Coordinates(b, frames, joints, landmarks);
     const auto distances = metrics::SumDistances(predicted, other, points, options_.order);

@@ -79,11 +79,12 @@ Status SequenceReader::FindLayouts(const std::string& name) {
   return Status();
 }
 
-Result<Sequence> SequenceReader::Read(const SequenceFile& file, double rate) {
-  if (rate <= 0) rate = array_rate_;
+Result<Sequence> SequenceReader::Read(const SequenceFile& file, double wanted) {
+  const double rate = wanted > 0 ? wanted : array_rate_;
   std::vector<std::string> notes;
   Result<Sequence> sequence =
-      file.kind == InputKind::kArrays     ? ReadMotionArrays(file.path, layouts_, rate, &notes)
+      file.kind == InputKind::kArrays
+          ? ReadMotionArrays(file.path, layouts_, array_rate_, wanted, &notes)
       : file.kind == InputKind::kOpenFace ? ReadOpenFaceFile(file.path, rate)
                                           : ReadOpenPoseFolder(file.path, rate);
   if (!sequence.ok()) return sequence.status();

@@ -46,9 +46,12 @@ struct ArrayLayout {
 };
 
 /// The motion in an .npz file of infer-cli: poses (pose, face; style_pose, style_face of a clip) or
-/// curves (face, lengths, perhaps times_ms).  Errors begin with the path.
+/// curves (face, lengths, perhaps times_ms).  Arrays that do not say their frame rate, as finished
+/// motion does, have `declared`, or where that is 0 what the layout says.  Poses and finished
+/// curves of another rate than `wanted` (0: any) are resampled to it, by straight lines.  Errors
+/// begin with the path.
 Result<Sequence> ReadMotionArrays(const std::string& path, const std::vector<ArrayLayout>& layouts,
-                                  double rate, std::vector<std::string>* notes);
+                                  double declared, double wanted, std::vector<std::string>* notes);
 
 class SequenceReader {
  public:

@@ -45,8 +45,9 @@ class Axis {
       high += around / 2;
     }
     step_ = Step(high - low, kTicks);
-    low_ = std::floor(low / step_);
-    high_ = std::ceil(high / step_);
+    // 100 but for rounding needs no tick above it.
+    low_ = std::floor(low / step_ + 1e-9);
+    high_ = std::ceil(high / step_ - 1e-9);
   }
 
   double At(double value) const {

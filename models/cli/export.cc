@@ -1,5 +1,8 @@
 #include "models/cli/export.h"
 
+#include <filesystem>
+#include <set>
+
 #include "models/cli/finish.h"
 #include "models/cli/json.h"
 #include "models/cli/npz.h"
@@ -66,6 +69,39 @@ Result<Motion> FindMotion(const Arguments& arguments, const WeightsFile& weights
   return Bad(weights.path() + ": several networks make such motion, expected --network NAME");
 }
 
+Status CheckFormats(const Motion& motion, const Exports& exports) {
+  for (const Exports::File& file : exports.files)
+    GESTUS_RETURN_IF_ERROR(outputs::Suits(motion, file.format).In(file.path));
+  return Status();
+}
+
+/// "a/b" of "./a//c/../b/".
+std::string Plain(const std::string& path) {
+  std::string plain = std::filesystem::path(path).lexically_normal().string();
+  if (plain.size() > 1 && plain.back() == '/') plain.pop_back();
+  return plain;
+}
+
+/// The last of two outputs of one path would be all that is left, and an input would be lost.
+Status CheckPaths(const Arguments& arguments, const Exports& exports) {
+  std::vector<std::string> paths = {arguments.output, arguments.html, arguments.svg, arguments.mp4};
+  for (const Exports::File& file : exports.files) paths.push_back(file.path);
+  std::set<std::string> seen, inputs = {Plain(arguments.weights)};
+  for (const std::string& path : arguments.inputs) inputs.insert(Plain(path));
+  for (const std::string* path :
+       {&arguments.words, &arguments.style, &arguments.source, &arguments.target})
+    inputs.insert(Plain(*path));
+  for (const std::string& path : paths) {
+    if (path.empty()) continue;
+    // Arrays may be replaced by what was made of them.
+    if (path != arguments.output && inputs.count(Plain(path)) > 0)
+      return Bad(path + ": an input and an output, expected another path for the output");
+    if (!seen.insert(Plain(path)).second)
+      return Bad(path + ": named for two outputs, expected a path for each");
+  }
+  return Status();
+}
+
 }  // namespace
 
 std::vector<std::string> Exports::Lines() const {
@@ -84,13 +120,22 @@ Result<Exports> ParseExports(const Arguments& arguments) {
     if (!format.ok()) return format.status().In("command line: --export");
     exports.files.push_back({*format, text.substr(equals + 1)});
   }
+  GESTUS_RETURN_IF_ERROR(CheckPaths(arguments, exports));
   exports.options.halve = arguments.halve;
   const std::vector<float>& stance = arguments.stance;
   if (stance.size() == 3) exports.options.stances = {{stance[0], stance[1], stance[2]}};
   return exports;
 }
 
+Status CheckExports(const fb::Network& record, const Exports& exports) {
+  if (exports.files.empty()) return Status();
+  const Result<Motion> layout = outputs::LayoutOf(record);
+  if (!layout.ok()) return layout.status();
+  return CheckFormats(*layout, exports);
+}
+
 Status WriteExports(const Motion& motion, const Exports& exports) {
+  GESTUS_RETURN_IF_ERROR(CheckFormats(motion, exports));
   for (const Exports::File& file : exports.files)
     GESTUS_RETURN_IF_ERROR(WriteMotion(motion, file.format, file.path, exports.options));
   return Status();

@@ -10,6 +10,10 @@
 #include "models/cli/args.h"
 #include "models/outputs/formats.h"
 
+namespace gestus::fb {
+struct Network;
+}
+
 namespace gestus::cli {
 
 struct Exports {
@@ -24,10 +28,15 @@ struct Exports {
   std::vector<std::string> Lines() const;
 };
 
-/// What the command line asks for.
+/// What the command line asks for.  Errors: a format that is unknown; a path that two of all
+/// outputs, or an input and an output other than --output, would have.
 Result<Exports> ParseExports(const Arguments& arguments);
 
-/// Writes every file; the first that cannot be written ends it.
+/// An error where the network makes no motion or what it makes does not suit a format: told before
+/// anything is computed.
+Status CheckExports(const fb::Network& record, const Exports& exports);
+
+/// Writes every file, when all formats suit; the first that cannot be written ends it.
 Status WriteExports(const outputs::Motion& motion, const Exports& exports);
 
 Status RunExport(const Arguments& arguments);

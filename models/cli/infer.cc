@@ -143,6 +143,7 @@ Status RunInfer(const Arguments& arguments) {
   if (const std::string note = IgnoredIsaNote(); arguments.isa.empty() && !note.empty()) {
     report.notes.push_back(note);
   }
+  GESTUS_RETURN_IF_ERROR(CheckExports(*setup->weights->FindNetwork(setup->name), *exports));
   Result<Feed> feed = OpenFeed(arguments, *given, *setup);
   if (!feed.ok()) return feed.status();
   // Created before the work, so that a forbidden path is told at once.

@@ -59,7 +59,8 @@ Result<Setup> OpenNetwork(const Arguments& arguments, const Offers& offers) {
   if (!kernels.ok()) return kernels.status();
   Setup setup;
   setup.kernels = *kernels;
-  Result<std::shared_ptr<const WeightsFile>> weights = WeightsFile::Open(arguments.weights);
+  Result<std::shared_ptr<const WeightsFile>> weights =
+      WeightsFile::Open(arguments.weights, {.residence = Residence::kCopied});
   if (!weights.ok()) return weights.status();
   setup.weights = *std::move(weights);
   std::string name = arguments.network;

@@ -31,8 +31,6 @@ std::string Timecode(std::int64_t frame, std::int64_t rate) {
 
 Status WriteArkit(const Motion& motion, const std::string& path) {
   const FaceCurves face(motion);
-  if (!face.HasUnits() && !face.HasHead())
-    return Lacks("action units and head angles", Format::kArkit);
   Result<TextFile> file = TextFile::Create(path);
   if (!file.ok()) return file.status();
   std::string header = "Timecode,BlendshapeCount";

@@ -91,7 +91,6 @@ class NeckPath {
 
 Status WriteBvh(const Motion& motion, const std::string& path, const FormatOptions& options,
                 bool lifted) {
-  if (!motion.body) return Lacks("body", lifted ? Format::kBvh3d : Format::kBvh);
   const LengthQuantile median = [](const Bone&) { return 0.5; };
   const Result<Skeleton> skeleton = MakeSkeleton(motion, options, lifted ? LiftedQuantile : median);
   if (!skeleton.ok()) return skeleton.status();

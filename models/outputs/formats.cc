@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <initializer_list>
 
 #include "models/io/text.h"
+#include "models/outputs/blendshapes.h"
+#include "models/outputs/face_curves.h"
 #include "models/outputs/writers.h"
 
 namespace gestus::outputs {
@@ -14,6 +17,9 @@ namespace {
 constexpr std::array<const char*, 11> kNames = {"openpose", "openface", "openface2", "csv",
                                                 "bvh",      "bvh3d",    "arkit",     "vrm",
                                                 "vrma",     "fap",      "bap"};
+
+// PATS' joints that turn bones of avatars.
+constexpr std::int64_t kRElbow = 2, kRWrist = 3, kLElbow = 5, kLWrist = 6, kNose = 7;
 
 // Larger values are no motion, and would overflow on the way to a file.
 constexpr float kMost = 1e9f;
@@ -65,9 +71,54 @@ Status CheckStances(const Motion& motion, const FormatOptions& options) {
   return Status();
 }
 
+bool HasPoint(const Motion& motion, std::initializer_list<std::int64_t> sources) {
+  if (!motion.body) return false;
+  return std::any_of(motion.body->points.begin(), motion.body->points.end(), [&](const Point& p) {
+    return std::find(sources.begin(), sources.end(), p.source) != sources.end();
+  });
+}
+
+bool HasExpression(const FaceCurves& face) {
+  return std::any_of(kBlendshapes.begin(), kBlendshapes.end(), [&](const Blendshape& shape) {
+    return shape.unit != 0 && face.HasUnit(shape.unit);
+  });
+}
+
+/// What `motion` lacks for `format`; empty: nothing.
+std::string LackOf(const Motion& motion, Format format) {
+  const FaceCurves face(motion);
+  const bool has_face = face.HasUnits() || face.HasHead();
+  // Elbows and the nose; a forearm alone turns a bone of VRM, but no joint of Greta's.
+  const bool has_upper = HasPoint(motion, {kLElbow, kRElbow, kNose});
+  switch (format) {
+    case Format::kCsv:
+      return "";
+    case Format::kOpenPose:
+    case Format::kBvh:
+    case Format::kBvh3d:
+      return motion.body ? "" : "body";
+    case Format::kOpenFace:
+    case Format::kOpenFace2:
+    case Format::kArkit:
+    case Format::kVrm:
+      return has_face ? "" : "action units and head angles";
+    case Format::kVrma:
+      if (has_upper || face.HasHead() || HasExpression(face) ||
+          HasPoint(motion, {kLWrist, kRWrist}))
+        return "";
+      return motion.body ? "arms and no nose" : "body, action units or head angles";
+    case Format::kFap:
+      return HasFap(face) ? "" : "action units of brows, lids or cheeks";
+    case Format::kBap:
+      return face.HasHead() || has_upper ? "" : "head angles, no arms and no nose";
+  }
+  return "";
+}
+
 Status Write(const Motion& motion, Format format, const std::string& path,
              const FormatOptions& options) {
   GESTUS_RETURN_IF_ERROR(CheckMotion(motion));
+  GESTUS_RETURN_IF_ERROR(Suits(motion, format));
   GESTUS_RETURN_IF_ERROR(CheckStances(motion, options));
   switch (format) {
     case Format::kOpenPose:
@@ -108,6 +159,12 @@ Result<Format> FormatOf(std::string_view name) {
   std::string all;
   for (const char* known : kNames) all += (all.empty() ? "" : ", ") + std::string(known);
   return Bad("format \"" + OneLine(name, 40) + "\" is unknown, expected one of " + all);
+}
+
+Status Suits(const Motion& motion, Format format) {
+  const std::string lack = LackOf(motion, format);
+  if (lack.empty()) return Status();
+  return Bad("the motion has no " + lack + ", which the format " + NameOf(format) + " needs");
 }
 
 Status WriteMotion(const Motion& motion, Format format, const std::string& path,

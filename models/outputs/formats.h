@@ -26,7 +26,7 @@ enum class Format {
   kVrm,        ///< "vrm": JSON, weights of expressions and the rotation of the head
   kVrma,       ///< "vrma": VRM Animation, binary glTF: arms, head and expressions
   kFap,        ///< "fap": MPEG-4 face animation of Greta
-  kBap,        ///< "bap": MPEG-4 body animation of Greta, the head
+  kBap,        ///< "bap": MPEG-4 body animation of Greta: head and arms
 };
 
 /// The formats' names, in the order above.
@@ -52,13 +52,17 @@ struct FormatOptions {
   std::string name = {};
 };
 
+/// An error unless `motion` has what `format` holds: a body for kOpenPose and BVH; action units or
+/// head angles for kOpenFace, kArkit and kVrm, and arms or a nose will do too for kVrma; action
+/// units of brows, lids or cheeks for kFap; head angles, arms or a nose for kBap; anything for
+/// kCsv. Only names are looked at, so a motion without frames is judged as well.
+Status Suits(const Motion& motion, Format format);
+
 /// Writes `motion` to `path`, completely or not at all.  An older file is replaced, and so is a
 /// folder that holds nothing but OpenPose's files.
 ///
 /// Errors: a motion without frames, with values that are no numbers or of sizes that do not fit;
-/// one that has nothing of what the format holds (a body for kOpenPose and BVH, action units or
-/// head angles for the others, arms or any of these for kVrma); a path that cannot be written. They
-/// begin with the path.
+/// one that does not suit the format; a path that cannot be written. They begin with the path.
 Status WriteMotion(const Motion& motion, Format format, const std::string& path,
                    const FormatOptions& options = {});
 

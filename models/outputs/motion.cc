@@ -131,9 +131,26 @@ std::vector<std::pair<std::int64_t, std::int64_t>> TimesOf(const Arrays& outputs
   return times;
 }
 
+using Channels = flatbuffers::Vector<flatbuffers::Offset<fb::Channel>>;
+
+std::vector<Curve> NamesOf(const Channels& channels) {
+  std::vector<Curve> curves;
+  for (const fb::Channel* channel : channels)
+    curves.push_back(
+        {channel->name()->str(), channel->unit() == nullptr ? "" : channel->unit()->str(),
+         channel->minimum(),
+         channel->minimum() + channel->step() * static_cast<float>(channel->levels() - 1)});
+  return curves;
+}
+
+Status NoMotion(const fb::Network& record) {
+  return Status(Code::kInvalidArgument, "network " + record.name()->str() +
+                                            ": makes no motion, expected a gesture network");
+}
+
 /// Model 1 and Model 2.
-Result<Motion> CurvesOf(const flatbuffers::Vector<flatbuffers::Offset<fb::Channel>>& channels,
-                        const Arrays& outputs, const CurveOptions& options) {
+Result<Motion> CurvesOf(const Channels& channels, const Arrays& outputs,
+                        const CurveOptions& options) {
   const Array *face = Find(outputs, "face"), *lengths = Find(outputs, "lengths");
   const auto count = static_cast<std::int64_t>(channels.size());
   if (face == nullptr || face->shape.size() != 3 || face->shape[2] != count ||
@@ -153,11 +170,7 @@ Result<Motion> CurvesOf(const flatbuffers::Vector<flatbuffers::Offset<fb::Channe
   for (const auto& [begin, end] : times) motion.frames = std::max(motion.frames, end);
   motion.frames = std::max<std::int64_t>(motion.frames, 1);
   Curves& curves = motion.curves.emplace();
-  for (const fb::Channel* channel : channels)
-    curves.curves.push_back(
-        {channel->name()->str(), channel->unit() == nullptr ? "" : channel->unit()->str(),
-         channel->minimum(),
-         channel->minimum() + channel->step() * static_cast<float>(channel->levels() - 1)});
+  curves.curves = NamesOf(channels);
   curves.values.resize(static_cast<std::size_t>(motion.frames * count));
   for (std::int64_t n = 0; n < count; ++n) {
     std::vector<Stretch> stretches;
@@ -187,6 +200,32 @@ Result<Motion> CurvesOf(const flatbuffers::Vector<flatbuffers::Offset<fb::Channe
 
 }  // namespace
 
+Result<Motion> LayoutOf(const fb::Network& record) {
+  Motion motion;
+  const auto add_body = [&](const fb::ZsMstm1Config& core) {
+    motion.body.emplace().points = PointsOf(record.joints(), core.d_pose() / 2);
+  };
+  switch (record.config_type()) {
+    case fb::Config::ZsMstm1Config:
+      add_body(*record.config_as_ZsMstm1Config());
+      return motion;
+    case fb::Config::ZsMstm2Config:
+      add_body(*record.config_as_ZsMstm2Config()->core());
+      motion.face.emplace().points =
+          PointsOf(record.features() == nullptr ? nullptr : record.features()->landmarks(),
+                   record.config_as_ZsMstm2Config()->d_face() / 2);
+      return motion;
+    case fb::Config::Model1Config:
+      motion.curves.emplace().curves = NamesOf(*record.config_as_Model1Config()->channels());
+      return motion;
+    case fb::Config::Model2Config:
+      motion.curves.emplace().curves = NamesOf(*record.config_as_Model2Config()->channels());
+      return motion;
+    default:
+      return NoMotion(record);
+  }
+}
+
 Result<Motion> MotionOf(const fb::Network& record, const Arrays& outputs,
                         const CurveOptions& options) {
   switch (record.config_type()) {
@@ -198,8 +237,7 @@ Result<Motion> MotionOf(const fb::Network& record, const Arrays& outputs,
     case fb::Config::Model2Config:
       return CurvesOf(*record.config_as_Model2Config()->channels(), outputs, options);
     default:
-      return Status(Code::kInvalidArgument, "network " + record.name()->str() +
-                                                ": makes no motion, expected a gesture network");
+      return NoMotion(record);
   }
 }
 

@@ -74,6 +74,10 @@ struct CurveOptions {
   double frame_rate = 24;  ///< of the videos that they were trained on (thesis 4.1.3)
 };
 
+/// What motion of the network `record` has: its points and curves, and no frame.  Errors: a network
+/// that makes no motion.
+Result<Motion> LayoutOf(const fb::Network& record);
+
 /// The motion in `outputs` of the network `record`: "pose" and "face" of ZS-MSTM, or "face" and
 /// "lengths" of Model 1 and Model 2 with "times_ms" beside them.
 ///

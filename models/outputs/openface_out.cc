@@ -35,8 +35,6 @@ std::string Header(bool with_keys) {
 Status WriteOpenFace(const Motion& motion, const std::string& path, const FormatOptions& options,
                      bool with_keys) {
   const FaceCurves face(motion);
-  if (!face.HasUnits() && !face.HasHead())
-    return Lacks("action units and head angles", Format::kOpenFace);
   Result<TextFile> file = TextFile::Create(path);
   if (!file.ok()) return file.status();
   GESTUS_RETURN_IF_ERROR(file->Add(Header(with_keys)));

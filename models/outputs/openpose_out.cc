@@ -135,7 +135,6 @@ class Writer {
 }  // namespace
 
 Status WriteOpenPose(const Motion& motion, const std::string& path, const FormatOptions& options) {
-  if (!motion.body) return Lacks("body", Format::kOpenPose);
   Writer writer(motion, options);
   GESTUS_RETURN_IF_ERROR(writer.Prepare());
   Result<NewFolder> folder = NewFolder::Create(path, kEnding);

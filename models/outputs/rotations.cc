@@ -21,6 +21,13 @@ Quaternion Product(const Quaternion& a, const Quaternion& b) {
 
 Quaternion Inverse(const Quaternion& q) { return {-q.x, -q.y, -q.z, q.w}; }
 
+Vector3 Turned(const Quaternion& q, const Vector3& v) {
+  const Vector3 axis = {q.x, q.y, q.z};
+  const Vector3 once = Cross(axis, v), twice = Cross(axis, once);
+  return {v.x + 2 * (q.w * once.x + twice.x), v.y + 2 * (q.w * once.y + twice.y),
+          v.z + 2 * (q.w * once.z + twice.z)};
+}
+
 Quaternion AboutAxis(int axis, double angle) {
   const double s = std::sin(angle / 2);
   return {axis == 0 ? s : 0, axis == 1 ? s : 0, axis == 2 ? s : 0, std::cos(angle / 2)};
@@ -64,6 +71,14 @@ std::array<double, 3> AnglesZxy(const Quaternion& q, const std::array<double, 3>
   };
   const double d1 = near(first), d2 = near(second);
   return d1 <= d2 ? first : second;
+}
+
+std::array<double, 3> AnglesXyz(const Vector3& x, const Vector3& y, const Vector3& z) {
+  // The vectors are the columns of Rz Ry Rx, whose last row is (-sin y, cos y sin x, cos y cos x).
+  const double about_y = std::asin(std::clamp(-x.z, -1.0, 1.0));
+  if (std::fabs(x.z) < 1 - 1e-12) return {std::atan2(y.z, z.z), about_y, std::atan2(x.y, x.x)};
+  // Only the difference or the sum of x and z is given.
+  return {x.z < 0 ? std::atan2(y.x, y.y) : std::atan2(-y.x, y.y), about_y, 0};
 }
 
 }  // namespace gestus::outputs

@@ -23,6 +23,7 @@ struct Quaternion {
 
 Quaternion Product(const Quaternion& a, const Quaternion& b);  ///< b is applied first
 Quaternion Inverse(const Quaternion& q);
+Vector3 Turned(const Quaternion& q, const Vector3& v);
 /// By `angle` (rad) about the axis 0 (x), 1 (y) or 2 (z).
 Quaternion AboutAxis(int axis, double angle);
 /// The shortest turn from one unit vector to another; about z when they are opposite.
@@ -31,6 +32,10 @@ Quaternion Between(const Vector3& from, const Vector3& to);
 /// Angles z, x, y (rad) with q = turn about z * turn about x * turn about y, the order of BVH's
 /// channels; of the two solutions and all full turns the one nearest to `last`.
 std::array<double, 3> AnglesZxy(const Quaternion& q, const std::array<double, 3>& last);
+/// Angles about x, y, z (rad) of the turn that takes the axes to the unit vectors `x`, `y`, `z`:
+/// about z * about y * about x, the order of Greta's joints.  That about y is within a quarter
+/// turn; where it is one, that about z is 0.
+std::array<double, 3> AnglesXyz(const Vector3& x, const Vector3& y, const Vector3& z);
 /// `angle` and whole turns, nearest to `last`.
 double Nearest(double angle, double last);
 

@@ -17,8 +17,6 @@ constexpr int kDigits = 6;
 
 Status WriteVrm(const Motion& motion, const std::string& path) {
   const FaceCurves face(motion);
-  if (!face.HasUnits() && !face.HasHead())
-    return Lacks("action units and head angles", Format::kVrm);
   std::vector<const Blendshape*> shapes;
   std::string text = "{\"format\":\"gestus-vrm\",\"specVersion\":\"1.0\",\"frameRate\":";
   text += Exact(motion.frame_rate) + ",\"frames\":" + std::to_string(motion.frames) +

@@ -202,12 +202,10 @@ void AppendWord(std::string* bytes, std::size_t value) {
 Status WriteVrma(const Motion& motion, const std::string& path) {
   const FaceCurves face(motion);
   const bool has_face = face.HasUnits() || face.HasHead();
-  if (!motion.body && !has_face) return Lacks("body, action units or head angles", Format::kVrma);
   std::vector<Track> tracks;
   std::vector<std::string> expressions;
   if (motion.body) GESTUS_RETURN_IF_ERROR(AddBody(motion, !face.HasHead(), &tracks));
   if (has_face) AddFace(motion, face, &tracks, &expressions);
-  if (tracks.empty()) return Lacks("arms and no nose", Format::kVrma);
 
   std::vector<float> times;
   for (std::int64_t t = 0; t < motion.frames; ++t)

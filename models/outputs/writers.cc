@@ -49,11 +49,6 @@ std::string ClipName(const std::string& path, const FormatOptions& options) {
   return name.empty() ? "motion" : name;
 }
 
-Status Lacks(const std::string& noun, Format format) {
-  return Status(Code::kInvalidArgument,
-                "the motion has no " + noun + ", which the format " + NameOf(format) + " needs");
-}
-
 Result<TextFile> TextFile::Create(const std::string& path) {
   Result<AtomicFile> file = AtomicFile::Create(path);
   if (!file.ok()) return file.status();

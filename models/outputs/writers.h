@@ -1,5 +1,5 @@
 // What the writers of single formats share.  A private header of formats.cc and theirs: motions
-// that come here have been checked.
+// that come here have been checked, and have what their format needs.
 #ifndef GESTUS_MODELS_OUTPUTS_WRITERS_H_
 #define GESTUS_MODELS_OUTPUTS_WRITERS_H_
 
@@ -14,6 +14,8 @@
 
 namespace gestus::outputs {
 
+class FaceCurves;
+
 Status WriteOpenPose(const Motion& motion, const std::string& path, const FormatOptions& options);
 Status WriteOpenFace(const Motion& motion, const std::string& path, const FormatOptions& options,
                      bool with_keys);
@@ -26,6 +28,9 @@ Status WriteVrma(const Motion& motion, const std::string& path);
 Status WriteFap(const Motion& motion, const std::string& path, const FormatOptions& options);
 Status WriteBap(const Motion& motion, const std::string& path, const FormatOptions& options);
 
+/// Whether there is an action unit that moves a FAP.
+bool HasFap(const FaceCurves& face);
+
 /// Appends `value` with `digits` after the point, never "-0.00", whatever the locale.
 void AppendFixed(std::string* text, double value, int digits);
 /// Appends the fewest digits that read back as the same float.
@@ -35,9 +40,6 @@ std::string Exact(double value);
 
 /// "wave" of "out/wave.bvh", or the option's name; blanks and control characters become "_".
 std::string ClipName(const std::string& path, const FormatOptions& options);
-
-/// "has no NOUN, which FORMAT needs": the one line of a motion that does not suit a format.
-Status Lacks(const std::string& noun, Format format);
 
 /// A text file in the making; nobody sees it before Commit().
 class TextFile {

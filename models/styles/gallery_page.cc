@@ -27,6 +27,7 @@ p, small { color: var(--soft); margin: .2rem 0; }
 button { font: inherit; color: inherit; background: var(--card); border: 1px solid var(--line);
   border-radius: .4rem; padding: .25rem .7rem; cursor: pointer; }
 button[aria-pressed="true"] { border-color: var(--accent); color: var(--accent); }
+.intro { margin: 0; color: var(--soft); max-width: 60rem; }
 .bar { display: flex; flex-wrap: wrap; gap: .4rem; margin: .8rem 0; align-items: center; }
 .maps { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(21rem, 100%), 1fr));
   gap: .8rem; }
@@ -51,6 +52,8 @@ th.on { color: var(--accent); }
 <body>
 <main>
 <header><h1>Styles</h1><p id="about"></p><button id="theme" style="margin-left:auto">dark</button></header>
+<p class="intro">A point is a style: what the network keeps of how a speaker moves, to move another like that. Styles
+near each other are alike. Each map shows one part of them; the table below has the numbers.</p>
 <div class="bar" id="kinds"></div>
 <div class="maps" id="maps"></div>
 <div class="card" id="details" aria-live="polite"></div>

@@ -1,10 +1,11 @@
-"""Runs bench/peers on its smallest network: agreeing engines get times, others get none.
+"""Runs bench/peers on its smallest network in all types: agreeing engines get times, others get none.
 
 usage: peers_test.py SOURCE_ROOT PROGRAMS
 """
 import importlib.util
 import json
 import pathlib
+import re
 import sys
 import tempfile
 import unittest
@@ -22,7 +23,7 @@ sys.path.insert(0, str(ROOT))
 # pylint: disable=wrong-import-position
 import numpy as np  # noqa: E402
 from bench.peers.__main__ import main  # noqa: E402
-from bench.peers import workers  # noqa: E402
+from bench.peers import measure, workers  # noqa: E402
 
 CASE = "lstm64"
 SVG = "{http://www.w3.org/2000/svg}"
@@ -42,27 +43,27 @@ class PeersTest(unittest.TestCase):
         cls.holder.cleanup()
 
     @classmethod
-    def run_bench(cls, *engines):
+    def run_bench(cls, *engines, types=workers.TYPES):
         return main(["--folder", str(cls.folder), "--programs", str(PROGRAMS), "--cases", CASE,
                      "--rounds", "2", "--starts", "1", "--threads", "1",
                      "--page", str(cls.folder / "page.md"), "--chart", str(cls.folder / "chart.svg"),
-                     "--engines", *engines])
+                     "--engines", *engines, "--types", *types])
 
     @classmethod
     def results(cls):
         [case] = json.loads((cls.folder / "results.json").read_text())["cases"]
-        return {result["engine"]: result for result in case["results"]}
+        return {(result["engine"], result["type"]): result for result in case["results"]}
 
     @classmethod
     def count_bars(cls):
         tree = xml.etree.ElementTree.parse(cls.folder / "chart.svg")
-        return sum(float(bar.get("height")) > 12 and bar.get("class") in ("gestus", "ort", "torch")
-                   for bar in tree.iter(SVG + "rect"))
+        kinds = {f"{engine} {kind}" for engine in ("gestus", "ort", "torch") for kind in workers.TYPES}
+        return sum(bar.get("class") in kinds for bar in tree.iter(SVG + "rect"))
 
     def refused_by_gestus(self, reason):
         """After what a test has damaged: no time, no bar, a status, and the reason on the page."""
-        self.assertEqual(self.run_bench("gestus"), 1)
-        result = self.results()["gestus"]
+        self.assertEqual(self.run_bench("gestus", types=["fp32"]), 1)
+        result = self.results()["gestus", "fp32"]
         self.assertIn(reason, result["failed"])
         self.assertEqual(result["threads"], {})
         self.assertIn(reason, (self.folder / "page.md").read_text())
@@ -71,10 +72,33 @@ class PeersTest(unittest.TestCase):
     def test_engines_that_agree_get_times(self):
         self.assertEqual(self.status, 0)
         for title in ("gestus", "PyTorch"):
-            rows = [line for line in self.page.splitlines() if f"| {title} | fp32 | 0." in line]
-            self.assertEqual(len(rows), 1, self.page)
+            for kind in workers.TYPES:
+                rows = [x for x in self.page.splitlines() if re.search(rf"\| {title} \| {kind} \| \d", x)]
+                self.assertEqual(len(rows), 1, self.page)
         self.assertIn("not asked for", self.page)  # ONNX Runtime
-        self.assertEqual(self.bars, 2)
+        self.assertEqual(self.bars, 2 * len(workers.TYPES))
+
+    def test_narrow_files_are_small(self):
+        """An element of bf16 takes half, of int8 a quarter of float32's bytes."""
+        for name in ("gestus.{}.fb", "torch.{}.pt"):
+            size = {kind: (self.folder / CASE / name.format(kind)).stat().st_size
+                    for kind in workers.TYPES}
+            self.assertLess(size["bf16"], 0.55 * size["fp32"])
+            self.assertLess(size["int8"], 0.35 * size["fp32"])
+
+    def test_a_narrow_type_has_its_own_peak(self):
+        with workers.Peak(PROGRAMS) as peak:
+            gops = peak.gops()
+            self.assertGreater(gops["fp32"], 0)
+            for kind in workers.NARROW:
+                if kind in peak.instructions:
+                    self.assertGreater(gops[kind], gops["fp32"])
+                else:
+                    self.assertEqual(gops[kind], gops["fp32"])
+
+    def test_long_runs_have_fewer_rounds(self):
+        seconds = measure._round_seconds({"slow": 30.0, "failed": float("inf")})
+        self.assertAlmostEqual(seconds, 30 + measure.SETTLE_SECONDS)
 
     def test_work_is_counted(self):
         flops = json.loads((self.folder / CASE / "case.json").read_text())["flops"]
@@ -112,15 +136,6 @@ class PeersTest(unittest.TestCase):
 
         with mock.patch.object(workers.Worker, "run", dies_later):
             self.refused_by_gestus("exit -9")
-
-    def test_other_types_run_where_their_files_are(self):
-        path = self.folder / CASE / "gestus.bf16.fb"
-        try:
-            path.write_bytes((self.folder / CASE / "gestus.fp32.fb").read_bytes())
-            self.assertEqual(self.run_bench("gestus"), 0)
-            self.assertRegex((self.folder / "page.md").read_text(), r"\| gestus \| bf16 \| 0\.")
-        finally:
-            path.unlink()
 
     def test_cores_are_different(self):
         self.assertEqual(len(set(workers.cores(2))), len(workers.cores(2)))

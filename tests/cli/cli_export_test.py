@@ -97,6 +97,24 @@ class ExportTest(CliTest):
         self.bad("export", FACE, "motion.npz", "--stance", "1,2,0", "--export", "csv=x", says=["stance"])
         self.bad(self.WEIGHTS, "input.npz", "--export", "mov=x", says=["\"mov\" is unknown"])
 
+    def test_nothing_is_left_where_one_format_does_not_suit(self):
+        """Told before the network runs, and before the first of several files."""
+        self.face_run()
+        self.bad(self.WEIGHTS, "input.npz", "-o", "m.npz", "--html", "m.html", "--export", "bvh=m.bvh",
+                 "--export", "arkit=m.csv", says=["m.csv: the motion has no action units"])
+        self.bad("export", FACE, "motion.npz", "--export", "csv=m.csv", "--export", "bvh=m.bvh",
+                 says=["m.bvh: the motion has no body"])
+        self.bad(self.AST_WEIGHTS, "input.npz", "--export", "csv=m.csv", says=["makes no motion"])
+
+    def test_two_outputs_of_one_path(self):
+        self.face_run()
+        for outputs in (("--export", "csv=m", "--export", "fap=m"), ("--export", "csv=./m", "--export", "bap=m/")):
+            self.bad("export", FACE, "motion.npz", *outputs, says=["m", "named for two outputs"])
+        for outputs in (("--html", "m.npz"), ("--export", "csv=x/../m.npz"), ("--svg", "p", "--mp4", "p")):
+            self.bad(self.WEIGHTS, "input.npz", "-o", "m.npz", *outputs, says=["named for two outputs"])
+        self.bad(self.WEIGHTS, "input.npz", "-o", "m.npz", "--svg", "./input.npz", says=["an input and an output"])
+        self.bad("export", FACE, "motion.npz", "--export", "csv=motion.npz", says=["an input and an output"])
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -129,6 +129,12 @@ TEST(PlanTest, PlacesAreUsedAgain) {
   EXPECT_EQ(plan->arena_bytes(), 3u * 40000);
 }
 
+TEST(PlanTest, TheArenaIsHardlyLargerThanItMustBe) {
+  const Model model = MakeEveryOp(kernels::BestTable());
+  EXPECT_GE(model.plan->arena_bytes(), model.plan->live_bytes());
+  EXPECT_LE(model.plan->arena_bytes(), model.plan->live_bytes() * 21 / 20);
+}
+
 TEST(PlanTest, TheArenaIsBounded) {
   const auto make = [](std::uint64_t limit) {
     Graph g;
@@ -175,6 +181,29 @@ TEST(PlanTest, FusesActivationResidualAndConcat) {
   EXPECT_EQ(Ops(*plain), (std::vector<std::string>{"linear", "activate", "linear", "add", "softmax",
                                                    "layer_norm", "concat"}));
   EXPECT_LE(fused->arena_bytes(), plain->arena_bytes());
+}
+
+TEST(PlanTest, RowsThatWouldCrowdTheCacheLieApart) {
+  Tensors tensors;
+  const LinearWeights wide{tensors.Make({512, 16}, 1), {}}, narrow{tensors.Make({16, 512}, 2), {}};
+  std::vector<float> results[2];
+  for (const bool seen : {false, true}) {
+    Graph g;
+    const Value x = g.Input("x", {3, 5, 16});
+    const Value inner = g.Linear(x, wide);
+    g.Output("y", g.Linear(inner, narrow));
+    if (seen) g.Output("inner", inner);  // whoever reads it may take it for dense
+    const auto plan = MakePlan(std::move(g));
+    EXPECT_EQ(plan->values()[static_cast<std::size_t>(inner.id)].row_stride, seen ? 512 : 528);
+    auto session = Session::Create(plan);
+    ASSERT_TRUE(session.ok());
+    for (int i = 0; i < 3 * 5 * 16; ++i)
+      (*session)->Input("x").f32[i] = 0.01f * static_cast<float>(i * 37 % 101);
+    (*session)->Run();
+    const ValueView y = (*session)->Output("y");
+    results[seen].assign(y.f32, y.f32 + y.shape.NumElements());
+  }
+  EXPECT_EQ(results[0], results[1]);
 }
 
 TEST(PlanTest, DropsWhatNoOutputNeeds) {

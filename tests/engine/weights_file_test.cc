@@ -173,17 +173,6 @@ TEST_P(ResidenceTest, OpensAFile) {
   EXPECT_EQ((*file)->path(), temp.path());
 }
 
-TEST_P(ResidenceTest, GivingPagesBackKeepsTheirContent) {
-  FileSpec spec = GoodFile();
-  spec.tensors = {{"n.big", {64, 1024}, std::vector<float>(64 * 1024, 1.5f)}};
-  const TempFile temp(spec.Build());
-  const auto file = WeightsFile::Open(temp.path(), options_);
-  ASSERT_TRUE(file.ok()) << file.status().message();
-  const TensorView view = (*file)->Find("n.big")->view;
-  (*file)->GiveBack(view);
-  for (int i = 0; i < 64 * 1024; ++i) ASSERT_EQ(view.f32()[i], 1.5f);
-}
-
 TEST_P(ResidenceTest, SurvivesReplacementAndRemovalOfTheFile) {
   const TempFile temp(GoodFile().Build());
   const auto file = WeightsFile::Open(temp.path(), options_);

@@ -12,7 +12,7 @@ class LstmTest : public KernelTest {
  protected:
   static void Step(const kernels::KernelTable& table, const GuardedFloats& packed,
                    const Matrix& x_proj, const Matrix& h_in, std::size_t begin, std::size_t end,
-                   Matrix* h_out, Matrix* c) {
+                   Matrix* h_out, Matrix* c, bool backward = false) {
     LstmStepArgs args;
     args.h_out = h_out->data();
     args.c = c->data();
@@ -22,6 +22,7 @@ class LstmTest : public KernelTest {
     args.hidden = h_in.cols();
     args.unit_begin = begin;
     args.unit_end = end;
+    args.backward = backward;
     table.f32_lstm_step(args);
   }
 };
@@ -68,7 +69,7 @@ TEST_P(LstmTest, SizesAgainstReference) {
   }
 }
 
-TEST_P(LstmTest, BitsDoNotDependOnTheDivision) {
+TEST_P(LstmTest, BitsDoNotDependOnDivisionAndDirection) {
   constexpr std::size_t kHidden = 100;
   const Matrix w = Matrix::Random(4 * kHidden, kHidden, 0, 1);
   const Matrix x = Matrix::Random(1, 4 * kHidden, 0, 2), h = Matrix::Random(1, kHidden, 0, 3);
@@ -76,11 +77,12 @@ TEST_P(LstmTest, BitsDoNotDependOnTheDivision) {
   const GuardedFloats packed = PackLstm(*table_, w);
   Matrix whole_h(1, kHidden), whole_c = c.Copy(0);
   Step(*table_, packed, x, h, 0, kHidden, &whole_h, &whole_c);
-  for (const std::size_t blocks : {1, 3}) {
+  for (const std::size_t blocks : {1, 3, 100}) {
     Matrix parts_h(1, kHidden), parts_c = c.Copy(0);
     const std::size_t units = blocks * table_->lstm_block;
     for (std::size_t u = 0; u < kHidden; u += units) {
-      Step(*table_, packed, x, h, u, std::min(kHidden, u + units), &parts_h, &parts_c);
+      Step(*table_, packed, x, h, u, std::min(kHidden, u + units), &parts_h, &parts_c,
+           blocks != 1);
     }
     EXPECT_EQ(std::memcmp(parts_h.data(), whole_h.data(), kHidden * sizeof(float)), 0);
     EXPECT_EQ(std::memcmp(parts_c.data(), whole_c.data(), kHidden * sizeof(float)), 0);

@@ -19,7 +19,8 @@ class TypedLstmTest : public TypedTest {
     return packed;
   }
   static void Step(const ProductKernels& p, const GuardedFloats& packed, const Matrix& x,
-                   const Matrix& h_in, std::size_t begin, std::size_t end, State* to) {
+                   const Matrix& h_in, std::size_t begin, std::size_t end, State* to,
+                   bool backward = false) {
     GuardedFloats scratch = GuardedBytes(p.scratch(1, h_in.cols()));
     LstmStepArgs args;
     args.h_out = to->h.data();
@@ -30,6 +31,7 @@ class TypedLstmTest : public TypedTest {
     args.hidden = h_in.cols();
     args.unit_begin = begin;
     args.unit_end = end;
+    args.backward = backward;
     args.scratch = scratch.data();
     p.lstm_step(args);
   }
@@ -59,7 +61,7 @@ TEST_P(TypedLstmTest, SizesAgainstReference) {
   }
 }
 
-TEST_P(TypedLstmTest, BitsDoNotDependOnTheDivision) {
+TEST_P(TypedLstmTest, BitsDoNotDependOnDivisionAndDirection) {
   constexpr std::size_t kHidden = 100;
   const TypedWeights w(type(), 4 * kHidden, kHidden, 1);
   const Matrix x = Matrix::Random(1, 4 * kHidden, 0, 2), h = Matrix::Random(1, kHidden, 0, 3);
@@ -67,11 +69,12 @@ TEST_P(TypedLstmTest, BitsDoNotDependOnTheDivision) {
   const GuardedFloats packed = Pack(products(), w);
   State whole{Matrix(1, kHidden), c.Copy(0)};
   Step(products(), packed, x, h, 0, kHidden, &whole);
-  for (const std::size_t blocks : {1, 3}) {
+  for (const std::size_t blocks : {1, 3, 100}) {
     State parts{Matrix(1, kHidden), c.Copy(0)};
     const std::size_t units = blocks * table_->lstm_block;
     for (std::size_t u = 0; u < kHidden; u += units)
-      Step(products(), packed, x, h, u, std::min(kHidden, u + units), &parts);
+      Step(products(), packed, x, h, u, std::min(kHidden, u + units), &parts,
+           blocks != 1);
     EXPECT_EQ(std::memcmp(parts.h.data(), whole.h.data(), kHidden * sizeof(float)), 0);
     EXPECT_EQ(std::memcmp(parts.c.data(), whole.c.data(), kHidden * sizeof(float)), 0);
   }

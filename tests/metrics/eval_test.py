@@ -311,6 +311,29 @@ class PosesTest(EvalTest):
                       for fps in ("10", "20"))
         self.assert_figure(fast, 8 * slow, "jerk")
 
+    def test_finished_predictions_and_plain_truths(self):
+        """Arrays of unlike rates: the truth is brought to the prediction's, not taken for it."""
+        pose = self.poses(30)
+        fast = np.stack([np.interp(np.arange(60) / 2, np.arange(30), c) for c in pose.T], 1)
+        self.put("x/p.npz", pose=fast.astype(np.float32), frame_rate=np.float32(30))
+        self.put("x/t.npz", pose=pose)
+        report = self.eval("x/p.npz", "x/t.npz")
+        self.assertIn("x/t.npz: resampled from 15.00 to 30.00 frames per second", report["notes"])
+        self.assertEqual((report["frame_rate"], report["all"]["frames"]), (30, 60))
+        for score in report["all"]["channels"]:
+            self.assertLess(score["rmse"], 1e-3)
+        values = self.random.uniform(0, 1, (20, 9)).astype(np.float32)
+        self.put("x/f.npz", face=values, frame_rate=np.float32(48))
+        self.put("x/g.npz", face=values[::2], frame_rate=np.float32(24))
+        report = self.eval("x/f.npz", "x/g.npz")
+        slow = np.repeat(values[::2], 2, 0).astype(np.float64)
+        slow[1:-1:2] = (slow[0:-2:2] + slow[2::2]) / 2
+        for column, score in enumerate(report["all"]["channels"]):
+            self.assert_figure(score["rmse"], reference.channel(values[:, column].astype(np.float64),
+                                                                slow[:, column])["rmse"], score["name"])
+        self.put("x/w.npz", face=values.reshape(2, 10, 9), lengths=np.full((2, 9), 10, np.int32))
+        self.bad("eval", "x/f.npz", "x/w.npz", says=["curves at 24.00 frames per second, expected 48.00"])
+
     def test_openpose_with_joints_that_were_never_seen(self):
         frames = 23
         truth = self.openpose("filmed", frames, missing=(15,))  # PATS 8, the right eye

@@ -213,6 +213,12 @@ def read_greta(path, parameters):
     return name, float(fps), masks, values
 
 
+def greta_joint(frame, flexion, twisting, abduct):
+    """The turn of a joint of Greta's, from the BAPs of its axes x, y and z."""
+    x, y, z = frame[[flexion, twisting, abduct]] / 1e5
+    return turn("Z", z) @ turn("Y", y) @ turn("X", x)
+
+
 class Export(unittest.TestCase):
     def setUp(self):
         kept = tempfile.TemporaryDirectory()
@@ -498,9 +504,11 @@ class Export(unittest.TestCase):
         spec = ["rate 24", "name take_2", *(f"curve {c}" for c in CURVES)]
         name, fps, masks, got = read_greta(self.export("bap", "b.bap", spec, values), 295)
         self.assertEqual((name, fps, len(got)), ("take_2", 25, len(slow)))
-        self.assertEqual(set(map(tuple, np.argwhere(masks)[:, 1:])), {(57,), (58,), (59,)})
-        for bap, column, sign in ((59, 6, 1), (58, 7, -1), (57, 8, -1)):  # tilt, torsion, roll
-            np.testing.assert_allclose(got[:, bap], sign * slow[:, column] * 1e5, atol=0.51)
+        self.assertEqual(set(np.argwhere(masks)[:, 1]), {57, 58, 59})
+        camera = np.diag([1, -1, -1])  # OpenFace's axes (right, down, away), seen in (left, up, forwards)
+        for frame, (rx, ry, rz) in zip(got, slow[:, 6:]):
+            want = camera @ turn("X", rx) @ turn("Y", ry) @ turn("Z", rz) @ camera
+            np.testing.assert_allclose(greta_joint(frame, 59, 58, 57), want, atol=2e-5)
         name, fps, masks, got = read_greta(self.export("fap", "f.fap", spec, values), 69)
         self.assertEqual((name, fps, len(got)), ("take_2", 25, len(slow)))
         au = dict(zip((1, 2, 4, 5, 6, 7), slow.T / 5))
@@ -511,6 +519,49 @@ class Export(unittest.TestCase):
         for fap, value in want.items():
             for side in (0, 1):
                 np.testing.assert_allclose(got[:, fap + side], value, atol=0.51, err_msg=str(fap))
+
+    def test_greta_arms(self):
+        """Greta's joints, turned as she turns them, point where the lifted BVH's bones do."""
+        joints, nose = list(range(8)), self.rng.normal(0, 0.1, 200).cumsum()
+        points = np.concatenate([self.arms()[:, :2] * [[[1], [-1]]],
+                                 np.stack([100 * np.sin(nose), -100 * np.cos(nose)], 1)[:, :, None]], 2)
+        spec = ["rate 15", *self.body(joints)]
+        places = Bvh(self.export("bvh3d", "b.bvh", spec, points)).places()
+        _, _, masks, got = read_greta(self.export("bap", "b.bap", spec, points), 295)
+        self.assertEqual(set(np.argwhere(masks)[:, 1]), {*range(32, 40), 57})
+        self.assertEqual(len(got), 200 * 25 // 15)
+        at = np.arange(len(got)) / 25 * 15
+        down = np.array([0, -1, 0])
+        for side, (first, flexion, twisting, abduct, elbow) in enumerate(
+                (("L", 32, 36, 34, 38), ("R", 33, 37, 35, 39))):
+            self.assertTrue((got[:, elbow] <= 0).all())  # elbows bend one way
+            bones = []
+            for begin, end in (("Shoulder", "Elbow"), ("Elbow", "Wrist")):
+                bone = places[first + end] - places[first + begin]
+                bone = np.stack([np.interp(at, np.arange(200), b) for b in bone.T], 1)
+                bones.append(bone / np.linalg.norm(bone, axis=1, keepdims=True))
+            for frame, upper, fore in zip(got, *bones):
+                shoulder = greta_joint(frame, flexion, twisting, abduct)
+                np.testing.assert_allclose(shoulder @ down, upper, atol=1e-4)
+                hand = shoulder @ turn("X", frame[elbow] / 1e5) @ down
+                self.assertLess(np.abs(hand - fore).max(), 0.021, side)  # a straight elbow has no side
+        roll = np.interp(at, np.arange(200), nose)  # to the right of the picture, the figure's left
+        self.assertLess(np.abs(np.exp(1j * got[:, 57] / 1e5) - np.exp(-1j * roll)).max(), 0.02)
+        self.assertGreater(np.abs(got[:, 38]).max(), 1e5)
+
+    def test_greta_knows_left_from_right(self):
+        """Both arms out, then raised; then the forearms forwards, seen from the front as dots."""
+        spec = ["rate 25", *self.body([1, 2, 3, 4, 5, 6])]
+        out = [[-167, -367, -567, 167, 367, 567], [0] * 6]
+        up = [[-167, -167, -167, 167, 167, 167], [0, -200, -400, 0, -200, -400]]
+        hanging = [[-167, -167, -167, 167, 167, 167], [0, 200, 200, 0, 200, 200]]
+        points = np.array([out] * 20 + [up] + [hanging], np.float32)
+        _, _, _, got = read_greta(self.export("bap", "b.bap", spec, points), 295)
+        quarter = np.pi / 2 * 1e5
+        # left and right shoulder: flexion, abduct, twisting; then the elbows
+        np.testing.assert_allclose(got[0, 32:40], [0, 0, quarter, -quarter, 0, 0, 0, 0], atol=1)
+        np.testing.assert_allclose(np.abs(got[20, 34:36]), 2 * quarter, atol=1)
+        np.testing.assert_allclose(got[21, 32:40], [0, 0, 0, 0, 0, 0, -quarter, -quarter], atol=1)
 
 
 if __name__ == "__main__":

@@ -189,14 +189,14 @@ TEST_F(FormatsTest, EveryFormatIsRefusedWhereItHasNothingToSay) {
                   NameOf(format) + " needs");
   EXPECT_EQ(Refusal(figure, Format::kFap),
             "the motion has no action units of brows, lids or cheeks, which the format fap needs");
-  EXPECT_EQ(Refusal(figure, Format::kBap),
-            "the motion has no head angles, which the format bap needs");
   Motion torso = figure;
   torso.body->points[5].source = torso.body->points[2].source = 1;
   torso.body->points[6].source = torso.body->points[3].source = 1;
   torso.body->points[7].source = 1;
   EXPECT_EQ(Refusal(torso, Format::kVrma),
             "the motion has no arms and no nose, which the format vrma needs");
+  EXPECT_EQ(Refusal(torso, Format::kBap),
+            "the motion has no head angles, no arms and no nose, which the format bap needs");
   Motion odd = face;
   for (Curve& curve : odd.curves->curves) curve.name = "?" + curve.name;
   EXPECT_FALSE(WriteMotion(odd, Format::kArkit, Path("odd.csv")).ok());
@@ -250,6 +250,12 @@ TEST_F(FormatsTest, OneFrameAndMissingJoints) {
     EXPECT_EQ(Text(name).find("nan"), std::string::npos);
   }
   EXPECT_TRUE(motion::ReadOpenPose(Path("one.openpose")).ok());
+  Motion limp = WholeFigure(1);
+  limp.body->points[2].source = 1;  // no right elbow, and a left forearm without length
+  limp.face.reset();
+  limp.body->values.assign(limp.body->values.size(), 0);
+  EXPECT_TRUE(WriteMotion(limp, Format::kBap, Path("limp.bap")).ok());
+  EXPECT_NE(Text("limp.bap").find("\n0 0 0 0 0 0 \n"), std::string::npos) << Text("limp.bap");
   const Motion talking = Talking(1);
   for (const Format format :
        {Format::kOpenFace, Format::kArkit, Format::kVrm, Format::kVrma, Format::kFap, Format::kBap})

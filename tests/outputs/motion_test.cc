@@ -19,6 +19,19 @@ using models::Array;
 using models::Arrays;
 using Config = std::function<Offset<void>(FlatBufferBuilder&)>;
 
+std::vector<std::string> NamesOf(const Motion& motion) {
+  std::vector<std::string> names;
+  for (const auto* figure : {&motion.body, &motion.face}) {
+    if (!*figure) continue;
+    for (const Point& point : (*figure)->points)
+      names.push_back(point.name + " " + std::to_string(point.source));
+  }
+  if (!motion.curves) return names;
+  for (const Curve& curve : motion.curves->curves) names.push_back(curve.name);
+  return names;
+}
+
+/// The motion; its layout, which needs no outputs, must have the same names.
 Result<Motion> Of(fb::Config type, Config config, const Arrays& outputs,
                   std::vector<test::JointSpec> joints = {}) {
   test::FileSpec file;
@@ -29,7 +42,16 @@ Result<Motion> Of(fb::Config type, Config config, const Arrays& outputs,
   const test::Bytes bytes = file.Build();
   const auto weights = WeightsFile::FromMemory(bytes.data(), bytes.size(), "w.fb");
   if (!weights.ok()) return weights.status();
-  return MotionOf(*(*weights)->FindNetwork(""), outputs);
+  const fb::Network& record = *(*weights)->FindNetwork("");
+  Result<Motion> motion = MotionOf(record, outputs);
+  if (!motion.ok()) return motion;
+  const Result<Motion> layout = LayoutOf(record);
+  EXPECT_TRUE(layout.ok()) << layout.status().message();
+  if (layout.ok()) {
+    EXPECT_EQ(NamesOf(*layout), NamesOf(*motion));
+    EXPECT_EQ(layout->frames, 0);
+  }
+  return motion;
 }
 
 Array F32(std::vector<std::int64_t> shape, std::vector<float> values) {

@@ -139,8 +139,8 @@ const ACTIONS = {
   l: () => setLooping(!looping),
   Escape: () => { timeline.setLoop(null); setLooping(false); },
   "+": () => zoom(0.5), "=": () => zoom(0.5), "-": () => zoom(2), 0: () => zoom(1e9),
-  t: () => press("trails", "trails"),
-  f: () => { if (stage.hasFace) press("close-up", "closeUp"); },
+  t: () => { if (stage.hasBody) press("trails", "trails"); },
+  f: () => { if (stage.hasBody) press("close-up", "closeUp"); },
   d: swapTheme,
   "?": () => byId("help").showModal(),
 };
@@ -189,7 +189,7 @@ function introduce() {
   byId("length").textContent = "/ " + clockText(show.seconds, 2);
   byId("frames").textContent = frames;
   byId("tracks").setAttribute("aria-valuemax", show.seconds.toFixed(2));
-  byId("close-up").hidden = !stage.hasFace;
+  byId("close-up").hidden = byId("trails").hidden = !stage.hasBody;
   document.body.classList.add(show.takes.length > 1 ? "compare" : "solo");
   document.body.classList.toggle("mute", !clock.sound);
   if (calm.matches) press("trails", "trails");

@@ -18,7 +18,7 @@ class Stage {
       left: most("left", Math.min), right: most("right", Math.max),
       top: most("top", Math.min), bottom: most("bottom", Math.max),
     };
-    this.hasFace = show.takes.some((motion) => motion.body);
+    this.hasBody = show.takes.some((motion) => motion.body);
     this.closeUp = false;
     this.trails = true;
   }
@@ -51,7 +51,10 @@ class Stage {
       [left, right, top, bottom] = [x - 0.62, x + 0.62, y - 0.66, y + 0.66];
     }
     const pad = 0.05 * Math.min(canvas.width, canvas.height);
-    const scale = Math.min((canvas.width - 2 * pad) / (right - left), (canvas.height - 1.5 * pad) / (bottom - top));
+    // In a narrow panel the head is where the panel's name stands.
+    const name = this.panels.length > 1 && canvas.clientWidth < 320 ? 30 * canvas.width / canvas.clientWidth : pad;
+    const scale = Math.min((canvas.width - 2 * pad) / (right - left),
+                           (canvas.height - pad / 2 - name) / (bottom - top));
     // The torso fades out at the lower edge of the panel.
     const x = canvas.width / 2 - scale * (left + right) / 2;
     const y = this.closeUp ? canvas.height / 2 - scale * (top + bottom) / 2

@@ -30,7 +30,8 @@ class Timeline {
       const seconds = (this.right - this.left) / 80;
       this.end = this.seconds > 1.4 * seconds ? seconds : this.seconds;
     }
-    this.rows = tracksOf(this.show, this.small, this.stretch());
+    this.lanes = lanesOf(this.show, (this.right - this.left) / this.span);
+    this.rows = tracksOf(this.show, this.small, this.stretch(), this.lanes);
     let y = RULER + (this.zoomed ? OVERVIEW + GAP : 0);
     for (const row of this.rows) {
       row.room = this.small && !UNLABELLED.has(row.label) ? 13 : 0;  // for the label above it
@@ -48,8 +49,10 @@ class Timeline {
     const stage = document.getElementById("stage").getBoundingClientRect();
     const beside = stage.right < this.canvas.getBoundingClientRect().left;
     if (!beside) return 1;
-    const plain = tracksOf(this.show, this.small, 1).reduce((sum, row) => sum + row.height + GAP, RULER);
-    return Math.min(Math.max((stage.height - 24 - RULER) / (plain - RULER), 1), 2);
+    const high = (stretch) => tracksOf(this.show, this.small, stretch, this.lanes)
+      .reduce((sum, row) => sum + row.height + GAP, RULER);
+    const plain = high(1), twice = high(2);  // words do not grow
+    return Math.min(Math.max(1 + (stage.height - 24 - plain) / Math.max(twice - plain, 1), 1), 2);
   }
 
   // What rows draw with, for the seconds in view or for all of them.
@@ -167,7 +170,7 @@ class Timeline {
     context.textAlign = "start";
     if (this.small) {
       context.font = `600 10.5px ${FONT}`;
-      const text = row.detail ? `${row.label} ${row.detail}` : row.label;
+      const text = [row.label, row.detail].filter((part) => part).join(row.detail.startsWith("and") ? " " : ", ");
       context.fillStyle = palette.muted;
       if (!UNLABELLED.has(row.label)) context.fillText(text, 2, -6);
       return;
@@ -201,7 +204,7 @@ class Timeline {
       context.fillStyle = palette.line;
       context.fillRect(Math.round(x), 4, 1, this.height - GAP);
       context.fillStyle = palette.muted;
-      if (x < view.right - 30) context.fillText(clockText(i * step, step < 1 ? 1 : 0), x + 4, 9);
+      if (x < view.right - 34) context.fillText(clockText(i * step, step < 1 ? 1 : 0), x + 8, 9);  // beside the hand
     }
   }
 

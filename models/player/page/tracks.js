@@ -8,11 +8,11 @@ const CURVE_NAMES = {
   AU07: "lid tight", Rx: "nod", Ry: "turn", Rz: "tilt",
 };
 
-function tracksOf(show, small, stretch) {
+function tracksOf(show, small, stretch, lanes) {
   const rows = [], high = (wide, narrow) => Math.round(small ? narrow : wide * stretch);
   if (show.levels) rows.push(waveRow(show, high(52, 44)));
   if (show.spectrogram) rows.push(spectrogramRow(show, high(68, 52)));
-  if (show.words.length > 0) rows.push(wordRow(show, 28));
+  if (show.words.length > 0) rows.push(wordRow(show, lanes));
   for (const name of curveNames(show)) rows.push(curveRow(show, name, high(38, 36)));
   if (show.takes.some((motion) => motion.body)) {
     rows.push(wristRow(show, "RWrist", "Right wrist", high(46, 40)));
@@ -101,7 +101,15 @@ function drawPitch(context, view, palette, { hz, rate }, height) {
   context.stroke();
 }
 
-function wordRow({ words }, height) {
+const WORD = 11;  // pixels between a word and its next, and at its edges, that it can be read
+
+// Words take turns in `lanes`, so that each may be as wide as its letters until the next in its lane.
+function wordRow({ words }, lanes) {
+  const high = lanes > 1 ? 19 : 22, height = 6 + lanes * (high + 2) - 2;
+  const fit = (context, text, room) => [12, 10.5].some((size) => {
+    context.font = `${size}px ${FONT}`;
+    return context.measureText(text).width + 6 <= room;
+  });
   return {
     label: "Words", detail: "", height,
     draw(context, view, palette) {
@@ -112,34 +120,34 @@ function wordRow({ words }, height) {
       if (now >= 0) this.drawWord(context, view, palette, now, true);
     },
     drawWord(context, view, palette, i, now) {
-      const [text, start, end] = words[i];
-      let x = view.x(start), width = Math.max(view.x(end) - x - 2, 2);
-      if (x + width < view.left || x > view.right) return;
-      if (now) {  // as wide as it needs to be
-        context.font = `12px ${FONT}`;
-        const more = Math.max(context.measureText(text).width + 8 - width, 0);
-        width += more;
-        x = Math.max(Math.min(x - more / 2, view.right - width - 1), view.left);
-      }
+      const [text, start, end] = words[i], y = 3 + i % lanes * (high + 2), next = words[i + lanes];
+      let x = view.x(start);
+      const own = Math.max(view.x(end) - x - 2, 2), room = next ? view.x(next[1]) - x - 2 : view.right - x - 2;
+      if (x + Math.max(own, room) < view.left || x > view.right) return;
+      const fits = fit(context, text, now ? Infinity : Math.max(own, room));
+      const width = fits ? Math.max(own, context.measureText(text).width + 6) : Math.max(own, room);
+      if (now) x = Math.max(Math.min(x, view.right - width - 1), view.left);  // all of it, whatever it covers
       context.fillStyle = now ? palette.accent : palette.word;
       context.beginPath();
-      context.roundRect(x + 1, 3, width, height - 6, 4);
+      context.roundRect(x + 1, y, width, high, 4);
       context.fill();
-      const fits = [12, 10.5].some((size) => {
-        context.font = `${size}px ${FONT}`;
-        return context.measureText(text).width < width - 2;
-      });
       if (!fits && width < 26) return;  // a letter or two would say nothing; the caption has it all
       context.save();
       context.clip();
       context.fillStyle = now ? palette.onAccent : palette.ink;
       context.textAlign = fits ? "center" : "start";
       context.direction = "inherit";
-      context.fillText(text, context.textAlign === "center" ? x + 1 + width / 2 : x + 4, height / 2 + 0.5);
+      context.fillText(text, fits ? x + 1 + width / 2 : x + 4, y + high / 2 + 0.5);
       context.restore();
     },
     value: () => "",
   };
+}
+
+// How many lanes words need that shall be read at `scale` pixels a second.
+function lanesOf({ words, seconds }, scale) {
+  const letters = words.reduce((sum, [text]) => sum + text.length, 0);
+  return 6.5 * letters + WORD * words.length > 0.85 * scale * seconds ? 2 : 1;
 }
 
 // Lines of all takes, that of the prediction on top.
@@ -196,7 +204,7 @@ function wristRow({ takes, prediction }, joint, label, height) {
   const y = (value) => height - 5 - (height - 9) * Math.min(value, high) / high;
   const shown = speeds.has(prediction) ? prediction : speeds.keys().next().value;
   return {
-    label, detail: "speed", height, takes,
+    label, detail: shown.normalised ? "shoulder lengths/s" : "pixels/s", height, takes,
     draw(context, view, palette) {
       drawRule(context, view, palette, y(0));
       drawLines(context, view, palette, takes, (motion) => speeds.get(motion), y);
@@ -204,7 +212,7 @@ function wristRow({ takes, prediction }, joint, label, height) {
     value: (time) => {
       const values = speeds.get(shown), { before, after, share } = between(shown, time);
       const speed = values[before] + share * (values[after] - values[before]);
-      return shown.normalised ? `${speed.toFixed(1)} sh/s` : `${speed.toFixed(0)} px/s`;
+      return speed.toFixed(shown.normalised ? 1 : 0);
     },
   };
 }

@@ -1,0 +1,1 @@
+"""Many agents, cold starts, memory, deadlines beside other programs: python3 -m bench.scale."""
