@@ -23,7 +23,9 @@ class AlignedBuffer {
   static AlignedBuffer Unset(std::size_t bytes) {
     AlignedBuffer buffer;
     const bool huge = bytes >= kHugePage;
-    buffer.data_.reset(std::aligned_alloc(huge ? kHugePage : kBufferAlign, Padded(bytes)));
+    const std::size_t align = huge ? kHugePage : kBufferAlign;
+    // aligned_alloc wants whole alignments; what is more than Padded() is never touched.
+    buffer.data_.reset(std::aligned_alloc(align, RoundUp(Padded(bytes), align)));
     if (buffer.data_ == nullptr) return buffer;
     buffer.size_ = bytes;
     // Fewer page faults when it is touched first, fewer misses of the TLB later.
@@ -38,9 +40,12 @@ class AlignedBuffer {
  private:
   static constexpr std::size_t kHugePage = std::size_t{2} << 20;
 
+  static std::size_t RoundUp(std::size_t bytes, std::size_t step) {
+    return (bytes + step - 1) / step * step;
+  }
   /// 64 bytes more than asked for: kernels may load, never use, a vector past the end.
   static std::size_t Padded(std::size_t bytes) {
-    return (bytes + 2 * kBufferAlign - 1) / kBufferAlign * kBufferAlign;
+    return RoundUp(bytes + kBufferAlign, kBufferAlign);
   }
   struct Free {
     void operator()(void* p) const { std::free(p); }
