@@ -95,6 +95,9 @@ def _parser():
     verify.add_argument("--tolerance", type=float,
                         help="largest relative error of any value (default 1e-4; with weights in "
                              "bf16 0.015, in int8 0.045)")
+    verify.add_argument("--isas", metavar="LIST",
+                        help="instruction sets to run on, such as sse2,avx2 (default: infer-cli's "
+                             "choice)")
     verify.set_defaults(run=_verify)
 
     example = commands.add_parser("example", help="an input of plausible size for a weights file")

@@ -27,21 +27,31 @@ def verify(options):
                                       options.ast and read_checkpoint(options.ast),
                                       options.map and mapping.read(options.map))
     inputs = networks.random_inputs(network, options.seed)
-    got = run_engine(options.infer_cli, options.weights, inputs)
     want = run(build(network, tensors), inputs, taps=True)
+    tolerance = _tolerance(file) if options.tolerance is None else options.tolerance
+    good = True
+    for isa in options.isas.split(",") if options.isas else [None]:
+        if isa:
+            print(f"on {isa}")
+        got = run_engine(options.infer_cli, options.weights, inputs, isa)
+        good &= _report(got, want, tolerance, options.infer_cli)
+    return 0 if good else 1
+
+
+def _report(got, want, tolerance, infer_cli):
+    """Prints the errors; whether all are small enough."""
     rows = compare(got, want)
     width = max(len(name) for name, *_ in rows)
     print(f"{'value':{width}}  {'shape':>14}  relative error")
     for name, shape, error in rows:
         print(f"{name:{width}}  {shape!s:>14}  {error:.2e}")
-    tolerance = _tolerance(file) if options.tolerance is None else options.tolerance
     failed = [row for row in rows if not row[2] <= tolerance]
     for name, _, error in failed:
         if name in got:
             print(f"{name}: relative error {error:.2e}, expected at most {tolerance:g}")
         else:
-            print(f"{name}: not among what {options.infer_cli} gave, expected {want[name].shape}")
-    return 1 if failed else 0
+            print(f"{name}: not among what {infer_cli} gave, expected {want[name].shape}")
+    return not failed
 
 
 def _tolerance(file):
@@ -51,14 +61,16 @@ def _tolerance(file):
     return 0.045 if "I8" in types else 0.015 if "BF16" in types else 1e-4
 
 
-def run_engine(infer_cli, weights, inputs):
-    """Arrays that infer-cli makes of `inputs`, intermediates included."""
+def run_engine(infer_cli, weights, inputs, isa=None):
+    """Arrays that infer-cli makes of `inputs`, intermediates included; `isa` as GESTUS_ISA."""
+    environment = {**os.environ, "GESTUS_ISA": isa} if isa else None
     with tempfile.TemporaryDirectory() as folder:
         source, target = os.path.join(folder, "input.npz"), os.path.join(folder, "output.npz")
         np.savez(source, **inputs)
         command = [infer_cli, weights, source, "-o", target, "--taps"]
         try:
-            done = subprocess.run(command, capture_output=True, text=True, check=False)
+            done = subprocess.run(command, capture_output=True, text=True, check=False,
+                                  env=environment)
         except OSError as error:
             raise ConvertError(f"{infer_cli}: {error.strerror}") from None
         if done.returncode != 0:

@@ -98,10 +98,11 @@ struct Node {
   float alpha = 0, eps = 0, scale = 1;
   int heads = 1;
   bool causal = false, by_step = false, reverse = false;
+  bool narrow = false;      ///< kAttention: in bf16 where the machine multiplies that
   std::int64_t before = 0;  ///< kPadRows: zero rows put before each sequence
   PatchOptions patches;
 };
-/// "linear", and "linear(int8)" where weights have a type of their own.
+/// "linear", and "linear(int8)" where weights have a type of their own; "attention(bf16)".
 std::string NameWithType(const Node& node);
 
 /// A value: its own storage, or a view of another value's.
@@ -138,7 +139,9 @@ class Graph {
   /// act(x W^T + b)
   Value Linear(Value x, const LinearWeights& w, Activation act = Activation::kNone,
                float alpha = 0.0f);
-  /// Multi-head attention on projected q (Tq, D), k (Tk, D), v (Tk, Dv); heads side by side.
+  /// Multi-head attention on projected q (Tq, D), k (Tk, D), v (Tk, Dv); heads side by side.  Where
+  /// all three come from weights of fewer than 32 bits, its products are of bf16 on machines that
+  /// have them.
   Value Attention(Value q, Value k, Value v, const AttentionOptions& options);
   /// All hidden states (T, H); `reverse` runs from the last row to the first.
   Value Lstm(Value x, const LstmWeights& w, bool reverse = false);
@@ -227,6 +230,8 @@ class Graph {
   }
   bool GoodShape(const char* op, const Shape& shape);
   bool HoldsSteps(const char* op, Value buffer);
+  /// Whether x, or what it is a view of, comes out of a product with weights of fewer than 32 bits.
+  bool IsNarrowProduct(Value x) const;
   const ValueInfo& info(Value x) const { return values_[static_cast<std::size_t>(x.id)]; }
   Value NewValue(Shape shape, DType dtype = DType::kF32);
   Value View(Value x, Shape shape, std::ptrdiff_t offset, std::ptrdiff_t row_stride,

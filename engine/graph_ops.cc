@@ -66,6 +66,7 @@ const char* Name(Op op) {
 
 std::string NameWithType(const Node& node) {
   const bool plain = node.weight.data == nullptr || node.weight.dtype == DType::kF32;
+  if (node.narrow) return std::string(Name(node.op)) + "(bf16)";
   return std::string(Name(node.op)) +
          (plain ? "" : std::string("(") + Name(node.weight.dtype) + ")");
 }
@@ -85,6 +86,14 @@ Value Graph::Linear(Value x, const LinearWeights& w, Activation act, float alpha
   node.act = act;
   node.alpha = alpha;
   return Emit(std::move(node), WithCols(shape(x), w.weight.shape[0]));
+}
+
+bool Graph::IsNarrowProduct(Value x) const {
+  const int base = info(x).base >= 0 ? info(x).base : x.id;
+  for (const Node& node : nodes_) {
+    if (node.output == base) return node.op == Op::kLinear && node.weight.dtype != DType::kF32;
+  }
+  return false;
 }
 
 Value Graph::Attention(Value q, Value k, Value v, const AttentionOptions& o) {
@@ -109,6 +118,7 @@ Value Graph::Attention(Value q, Value k, Value v, const AttentionOptions& o) {
   node.heads = o.heads;
   node.causal = o.causal;
   node.by_step = o.by_step;
+  node.narrow = IsNarrowProduct(q) && IsNarrowProduct(k) && IsNarrowProduct(v);
   node.scale = o.scale != 0.0f
                    ? o.scale
                    : 1.0f / std::sqrt(static_cast<float>(sq.Cols()) / static_cast<float>(o.heads));

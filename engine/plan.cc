@@ -213,10 +213,18 @@ Status Plan::PlaceInArena(std::uint64_t max_bytes) {
   return {};
 }
 
+double Plan::flops() const {
+  double sum = 0;
+  for (const Step& step : steps_) {
+    const int loop = step.node.loop;
+    sum += step.cost.flops * (loop >= 0 ? static_cast<double>(loops_[Index(loop)].count) : 1.0);
+  }
+  return sum;
+}
+
 std::string Plan::ToString() const {
   std::string text;
   char line[256];
-  double flops = 0;
   for (std::size_t i = 0; i < steps_.size(); ++i) {
     const Node& n = steps_[i].node;
     std::string what = NameWithType(n);
@@ -230,8 +238,6 @@ std::string Plan::ToString() const {
                   values_[Index(n.output)].shape.ToString().c_str(), s.offset,
                   steps_[i].cost.flops * 1e-6, n.loop >= 0 ? "  x loop" : "");
     text += line;
-    flops += steps_[i].cost.flops *
-             (n.loop >= 0 ? static_cast<double>(loops_[Index(n.loop)].count) : 1.0);
   }
   std::uint64_t sum = 0;
   for (const Storage& s : storage_) sum += s.in_arena ? s.bytes : 0;
@@ -239,7 +245,7 @@ std::string Plan::ToString() const {
       line, sizeof line,
       "      %zu ops, %.3f GFLOP, arena %.2f MiB (at once %.2f, values %.2f MiB), scratch "
       "%.2f MiB a thread\n",
-      steps_.size(), flops * 1e-9, static_cast<double>(arena_bytes_) / 1048576.0,
+      steps_.size(), flops() * 1e-9, static_cast<double>(arena_bytes_) / 1048576.0,
       static_cast<double>(live_bytes_) / 1048576.0, static_cast<double>(sum) / 1048576.0,
       static_cast<double>(worker_bytes_) / 1048576.0);
   return text + line;

@@ -60,6 +60,8 @@ class Plan {
   std::uint64_t live_bytes() const { return live_bytes_; }
   /// Scratch that each worker needs beside the arena.
   std::uint64_t worker_bytes() const { return worker_bytes_; }
+  /// Of one run.
+  double flops() const;
 
   /// A table of the steps: op, shapes, place in the arena, work.
   std::string ToString() const;

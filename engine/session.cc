@@ -113,19 +113,21 @@ Result<std::unique_ptr<Session>> Session::Create(std::shared_ptr<const Plan> pla
   std::unique_ptr<Session> session(new Session(std::move(plan)));
   const Plan& p = *session->plan_;
   Impl& impl = *session->impl_;
-  const auto threads = static_cast<std::size_t>(options.threads);
+  const bool alone = p.flops() < options.least_shared_flops;
+  const auto threads = static_cast<std::size_t>(alone ? 1 : options.threads);
   impl.arena = AlignedBuffer(p.arena_bytes());
   impl.scratch = AlignedBuffer(p.worker_bytes() * threads);
   if (impl.arena.data() == nullptr || impl.scratch.data() == nullptr)
     return Status(Code::kResourceExhausted,
                   "session: no memory for " +
                       std::to_string(p.arena_bytes() + p.worker_bytes() * threads) + " bytes");
-  if (options.threads > 1) {
-    impl.pool =
+  if (options.threads > 1 && (!alone || options.pool != nullptr)) {
+    auto pool =
         options.pool != nullptr ? options.pool : std::make_shared<ThreadPool>(options.threads);
-    if (!impl.pool->complete() || impl.pool->threads() != options.threads)
+    if (!pool->complete() || pool->threads() != options.threads)
       return Status(Code::kResourceExhausted,
                     "session: " + std::to_string(options.threads) + " threads are not to be had");
+    if (!alone) impl.pool = std::move(pool);
   }
   impl.BindOps(p);
   if (options.profile) {
@@ -161,6 +163,8 @@ ValueView Session::Output(std::string_view name) const {
   return {ref.f32, reinterpret_cast<std::int32_t*>(ref.f32),
           plan_->values()[static_cast<std::size_t>(id)].shape, ref.row_stride};
 }
+
+int Session::threads() const { return impl_->pool != nullptr ? impl_->pool->threads() : 1; }
 
 void Session::Run() noexcept {
   const auto task = [](void* self, Worker worker) {

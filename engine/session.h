@@ -28,11 +28,15 @@ class Plan;
 class ThreadPool;
 
 inline constexpr int kMaxThreads = 64;
+/// FLOPs of a run that take as long as it takes to wake another thread, some 100 us.
+inline constexpr double kLeastSharedFlops = 2e7;
 
 struct SessionOptions {
   int threads = 1;                     ///< 1 to 64, the caller's among them
   std::shared_ptr<ThreadPool> pool{};  ///< of that many threads; null: the session makes its own
   bool profile = false;
+  /// A plan of less work runs on the caller's thread alone.
+  double least_shared_flops = kLeastSharedFlops;
 };
 
 /// What one op cost over all runs since the profile was last reset.
@@ -67,6 +71,8 @@ class Session {
 
   void Run() noexcept;
 
+  /// How many threads a run takes: fewer than were asked for where they would not pay.
+  int threads() const;
   const Plan& plan() const { return *plan_; }
   std::uint64_t arena_bytes() const;
   /// Empty unless SessionOptions::profile was set.

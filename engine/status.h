@@ -42,6 +42,11 @@ class [[nodiscard]] Status {
   std::string message_;
 };
 
+/// A file or an array is not as it should be.
+inline Status BadInput(std::string sentence) {
+  return Status(Code::kBadInput, std::move(sentence));
+}
+
 template <class T>
 class [[nodiscard]] Result {
  public:

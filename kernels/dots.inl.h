@@ -64,6 +64,29 @@ struct IntSums {
   }
 };
 
+/// float32 weights and rows as they are.
+template <class Arch>
+struct Float32 : FloatSums<Arch> {
+  using Isa = Arch;
+  using Sum = Batch<Arch>;
+  using Row = float;
+  static constexpr bool kPrepared = false;
+  static constexpr std::size_t kGroup = 1, kBytes = 4, kPhases = 1;
+
+  template <std::size_t>
+  GESTUS_INLINE static Sum load(const std::byte* p) {
+    return Sum::load_unaligned(reinterpret_cast<const float*>(p));
+  }
+  template <std::size_t>
+  GESTUS_INLINE static Sum broadcast(const Row* row, std::size_t group) {
+    return Sum(row[group]);
+  }
+  GESTUS_INLINE static Sum dot(const Sum& sum, const Sum& x, const Sum& w) {
+    return multiply_add(x, w, sum);
+  }
+  GESTUS_INLINE static void keep(const Sum& x) { keep_alive<Arch>(x); }
+};
+
 /// bf16 weights widened, two halves of a 32-bit lane one after the other; rows are float32.
 template <class Arch>
 struct WidenedBf16 : FloatSums<Arch> {
@@ -174,6 +197,37 @@ struct PairsI8 : IntSums<Arch> {
   static constexpr Row kZeroRow = 0;
   GESTUS_INLINE static void store_row(std::byte* p, const Sum& q) { store_shorts(p, q); }
 };
+
+template <class Dot, std::size_t R, std::size_t V>
+struct DotSums {
+  typename Dot::Sum v[R][V];
+};
+
+/// sums[r][:] += the products of one group, of which `kPhases` parts are wanted.
+template <class Dot, std::size_t R, std::size_t V, std::size_t kPhase, std::size_t kPhases>
+GESTUS_INLINE void dot_step(DotSums<Dot, R, V>& sums, const typename Dot::Row* const (&rows)[R],
+                            std::size_t group, const std::byte* w) {
+  constexpr std::size_t kVectorBytes = Batch<typename Dot::Isa>::size * Dot::kBytes;
+  decltype(Dot::template load<kPhase>(w)) columns[V];
+#pragma GCC unroll 8
+  for (std::size_t v = 0; v < V; ++v) {
+    columns[v] = Dot::template load<kPhase>(w + v * kVectorBytes);
+  }
+#pragma GCC unroll 16
+  for (std::size_t r = 0; r < R; ++r) {
+    const auto x = Dot::template broadcast<kPhase>(rows[r], group);
+#pragma GCC unroll 8
+    for (std::size_t v = 0; v < V; ++v) sums.v[r][v] = Dot::dot(sums.v[r][v], x, columns[v]);
+    Dot::keep(x);
+  }
+  if constexpr (R > 1) {
+#pragma GCC unroll 8
+    for (std::size_t v = 0; v < V; ++v) Dot::keep(columns[v]);
+  }
+  if constexpr (kPhase + 1 < kPhases) {
+    dot_step<Dot, R, V, kPhase + 1, kPhases>(sums, rows, group, w);
+  }
+}
 
 }  // namespace
 }  // namespace gestus::kernels

@@ -72,6 +72,13 @@ struct NativeBf16 : FloatSums<xsimd::avx512bw> {
     const auto shorts = reinterpret_cast<__m256i>(_mm512_cvtneps_pbh(x));
     _mm256_storeu_si256(reinterpret_cast<__m256i*>(p), shorts);
   }
+  /// Lanes of two values, `even` in the lower half.
+  GESTUS_INLINE static Sum pair(const Sum& even, const Sum& odd) {
+    const auto widen = [](const Sum& y) {
+      return _mm512_cvtepu16_epi32(reinterpret_cast<__m256i>(_mm512_cvtneps_pbh(y)));
+    };
+    return _mm512_castsi512_ps(_mm512_or_si512(widen(even), _mm512_slli_epi32(widen(odd), 16)));
+  }
 };
 #endif
 

@@ -94,8 +94,7 @@ struct TileEnd {
     if (!holds(epilogue)) return;
     relu = epilogue.act == Activation::kRelu;
     residual_stride = epilogue.residual_stride;
-    if (epilogue.residual)
-      residual = epilogue.residual + row_offset(row, residual_stride) + column;
+    if (epilogue.residual) residual = epilogue.residual + row_offset(row, residual_stride) + column;
   }
 
   /// Whether nothing but this is left to do.
@@ -121,7 +120,8 @@ GESTUS_INLINE void end_tile(TileSum<Arch, R, V>& sum, const TileEnd& end) {
   if (end.bias) {
     Batch<Arch> bias[V];
 #pragma GCC unroll 8
-    for (std::size_t v = 0; v < V; ++v) bias[v] = Batch<Arch>::load_unaligned(end.bias + v * kWidth);
+    for (std::size_t v = 0; v < V; ++v)
+      bias[v] = Batch<Arch>::load_unaligned(end.bias + v * kWidth);
 #pragma GCC unroll 16
     for (std::size_t r = 0; r < R; ++r) {
 #pragma GCC unroll 8
@@ -143,8 +143,8 @@ GESTUS_INLINE void end_tile(TileSum<Arch, R, V>& sum, const TileEnd& end) {
     for (std::size_t r = 0; r < R; ++r) {
 #pragma GCC unroll 8
       for (std::size_t v = 0; v < V; ++v) {
-        sum.v[r][v] += Batch<Arch>::load_unaligned(
-            end.residual + row_offset(r, end.residual_stride) + v * kWidth);
+        sum.v[r][v] += Batch<Arch>::load_unaligned(end.residual +
+                                                   row_offset(r, end.residual_stride) + v * kWidth);
       }
     }
   }
@@ -217,7 +217,7 @@ GESTUS_INLINE void gemm_slice(const GemmArgs& args, const GemmSlice& slice) {
   Ahead ahead{slice.next, lines_ahead(Tile::kColumns * kTileUnroll / kLineFloats,
                                       tiles_of<Arch>(slice.m_end - slice.m_begin))};
   for (std::size_t row = slice.m_begin; row < slice.m_end;) {
-    const std::size_t rows = next_tile_rows<Arch>(slice.m_end - row);
+    const std::size_t rows = next_tile_rows<Tile>(slice.m_end - row);
     float* out = args.out + row_offset(row, args.out_stride) + slice.column;
     const float* a = args.a + row_offset(row, args.a_stride) + slice.k_begin;
     if (slice.columns == Tile::kColumns) {
@@ -237,8 +237,8 @@ GESTUS_INLINE void gemm_slice(const GemmArgs& args, const GemmSlice& slice) {
       }
     }
     row += rows;
-    ahead.from = static_cast<const float*>(ahead.from) +
-                 slice.k / kTileUnroll * ahead.lines * kLineFloats;
+    ahead.from =
+        static_cast<const float*>(ahead.from) + slice.k / kTileUnroll * ahead.lines * kLineFloats;
   }
 }
 

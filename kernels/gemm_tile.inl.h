@@ -140,9 +140,9 @@ GESTUS_INLINE void tile_multiply(TileSum<Arch, R, V>& sum, const float* a, std::
 
 /// Rows of the next tile when `left` rows remain: the last two tiles share their rows evenly, since
 /// a tile of two rows alone takes as long as one of four.
-template <class Arch>
+template <class Tile>
 GESTUS_INLINE std::size_t next_tile_rows(std::size_t left) {
-  constexpr std::size_t kRows = GemmTile<Arch>::kRows;
+  constexpr std::size_t kRows = Tile::kRows;
   if (left >= 2 * kRows || left == kRows) return kRows;
   return left > kRows ? (left + 1) / 2 : left;
 }

@@ -66,9 +66,8 @@ struct GemmArgs {
   void* scratch = nullptr;  ///< `scratch` bytes on a 64-byte boundary; float32 weights need none
 };
 
-/// One head of scaled dot-product attention over `rows` query rows, computed tile by tile with a
-/// running softmax (Milakov & Gimelshein 2018), so that the scores never stand in memory as a
-/// whole.
+/// One head of scaled dot-product attention over `rows` query rows, of which a few at a time have
+/// their scores in memory.
 ///   out[i] = sum_j softmax_j(scale * q[i].k[j] + key_bias[j]) v[j]
 /// A query whose keys are all masked gives zeros.
 struct AttentionArgs {
@@ -85,7 +84,7 @@ struct AttentionArgs {
   float scale = 1.0f;
   bool causal = false;        ///< query i sees keys j <= first_row + i
   std::size_t first_row = 0;  ///< position of q[0] in its sequence; only `causal` reads it
-  float* scratch = nullptr;   ///< f32_attention_scratch(...) floats
+  float* scratch = nullptr;   ///< as many floats as the kernel's `..._scratch` says; 64-byte aligned
 };
 
 /// One step of an LSTM layer (Hochreiter & Schmidhuber 1997; gates in the order i, f, g, o) for the
@@ -147,6 +146,12 @@ struct ProductKernels {
   void (*gather)(float* y, std::ptrdiff_t y_stride, const void* table, const float* scale,
                  const std::int32_t* ids, std::size_t n, std::size_t cols, std::size_t vocabulary,
                  float factor);
+
+  /// Attention with queries, keys, weights of values and values rounded to the type (nearest, even),
+  /// sums and softmax in float32.  Null where the type has none: float32's serves then.
+  std::size_t (*attention_scratch)(std::size_t rows, std::size_t keys, std::size_t head_dim,
+                                   std::size_t value_dim);
+  void (*attention)(const AttentionArgs& args);
 };
 
 /// Elements of one row of i8 weights that cannot overflow a sum: 255 * 127 * 2^16 < 2^31.

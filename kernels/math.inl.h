@@ -41,11 +41,16 @@ template <class Arch, class... C>
   return multiply_add(x, polynomial(x, rest...), xsimd::batch<float, Arch>(c0));
 }
 
-/// e^x.  Results below 2^-126 are zero, as in all code that runs with denormals flushed.
+/// e^x.  Results below 2^-126 are zero in all code that runs with denormals flushed.
 template <class Arch>
-[[gnu::always_inline]] inline xsimd::batch<float, Arch> vexp(const xsimd::batch<float, Arch>& x) {
+[[gnu::always_inline]] inline xsimd::batch<float, Arch> vexp(const xsimd::batch<float, Arch>& of) {
   using B = xsimd::batch<float, Arch>;
   using I = xsimd::batch<std::int32_t, Arch>;
+  B x = of;
+#if defined(__AVX512F__)
+  // Outside of these the result is zero or infinite anyway.  NaN, the second operand, stays.
+  if constexpr (B::size == 16) x = _mm512_min_ps(B(89.0f), _mm512_max_ps(B(-105.0f), x));
+#endif
   // Adding 1.5 * 2^23 rounds x / ln 2 to an integer n and leaves n in the low bits of the sum.
   const B shifter(12582912.0f);
   const B shifted = multiply_add(x, B(1.44269504f), shifter);
@@ -56,6 +61,9 @@ template <class Arch>
   const B p =
       polynomial(r, 0.49999994f, 0.166665211f, 0.041668389f, 0.00836874545f, 0.00138145394f);
   const B e = B(1.0f) + multiply_add(r * r, p, r);
+#if defined(__AVX512F__)
+  if constexpr (B::size == 16) return _mm512_scalef_ps(e, n);
+#endif
   // n goes straight into the exponent of e, which is in (0.7, 1.42).
   const I bits = xsimd::bitwise_cast<I>(e) + (xsimd::bitwise_cast<I>(shifted) << 23);
   const B y = xsimd::select(x < B(-87.33654f), B(0.0f), xsimd::bitwise_cast<B>(bits));

@@ -16,37 +16,6 @@
 namespace gestus::kernels {
 namespace {
 
-template <class Dot, std::size_t R, std::size_t V>
-struct DotSums {
-  typename Dot::Sum v[R][V];
-};
-
-/// sums[r][:] += the products of one group, of which `kPhases` parts are wanted.
-template <class Dot, std::size_t R, std::size_t V, std::size_t kPhase, std::size_t kPhases>
-GESTUS_INLINE void dot_step(DotSums<Dot, R, V>& sums, const typename Dot::Row* const (&rows)[R],
-                            std::size_t group, const std::byte* w) {
-  constexpr std::size_t kVectorBytes = Batch<typename Dot::Isa>::size * Dot::kBytes;
-  decltype(Dot::template load<kPhase>(w)) columns[V];
-#pragma GCC unroll 8
-  for (std::size_t v = 0; v < V; ++v) {
-    columns[v] = Dot::template load<kPhase>(w + v * kVectorBytes);
-  }
-#pragma GCC unroll 16
-  for (std::size_t r = 0; r < R; ++r) {
-    const auto x = Dot::template broadcast<kPhase>(rows[r], group);
-#pragma GCC unroll 8
-    for (std::size_t v = 0; v < V; ++v) sums.v[r][v] = Dot::dot(sums.v[r][v], x, columns[v]);
-    Dot::keep(x);
-  }
-  if constexpr (R > 1) {
-#pragma GCC unroll 8
-    for (std::size_t v = 0; v < V; ++v) Dot::keep(columns[v]);
-  }
-  if constexpr (kPhase + 1 < kPhases) {
-    dot_step<Dot, R, V, kPhase + 1, kPhases>(sums, rows, group, w);
-  }
-}
-
 // As kTileUnroll.
 constexpr std::size_t kDotUnroll = kTileUnroll == 1 ? 1 : 4;
 
@@ -206,7 +175,7 @@ GESTUS_INLINE void dot_panel(const GemmArgs& args, const TypedRows<Dot>& rows, s
   Ahead ahead{next, lines_ahead(Tile::kColumns * Dot::kBytes * kDotUnroll / kLine,
                                 tiles_of<Arch>(m_end - m_begin))};
   for (std::size_t row = m_begin; row < m_end;) {
-    const std::size_t count = next_tile_rows<Arch>(m_end - row);
+    const std::size_t count = next_tile_rows<Tile>(m_end - row);
     float* out = args.out + row_offset(row, args.out_stride) + column;
     if (columns == Tile::kColumns) {
       const TileEnd end(args.epilogue, row, column);

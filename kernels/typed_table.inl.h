@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <cstring>
 
+#include "kernels/attention.inl.h"
 #include "kernels/columns.inl.h"
 #include "kernels/kernels.h"
 #include "kernels/typed_gemm.inl.h"
@@ -51,6 +52,25 @@ constexpr auto gather_of() {
     return typed_gather<std::uint16_t>;
 }
 
+/// Whether attention by Dot is any better than float32's.
+template <class Dot>
+constexpr bool kHasAttention = Dot::kPrepared&& Dot::kTrailerBytes == 0;
+
+template <class Dot>
+constexpr auto attention_scratch_of() {
+  if constexpr (kHasAttention<Dot>)
+    return attention_scratch<Dot>;
+  else
+    return nullptr;
+}
+template <class Dot>
+constexpr auto attention_of() {
+  if constexpr (kHasAttention<Dot>)
+    return attention<Dot>;
+  else
+    return nullptr;
+}
+
 template <class Dot>
 constexpr ProductKernels MakeProducts(const char* how, void (*gemm)(const GemmArgs&)) {
   return {
@@ -64,6 +84,8 @@ constexpr ProductKernels MakeProducts(const char* how, void (*gemm)(const GemmAr
       typed_lstm_pack<Dot>,
       typed_lstm_step<Dot>,
       gather_of<Dot>(),
+      attention_scratch_of<Dot>(),
+      attention_of<Dot>(),
   };
 }
 

@@ -68,7 +68,7 @@ Result<Arrays> GraphNetwork::Run(const Arrays& inputs, const RunOptions& options
     if (!tapped.ok()) return tapped.status();
     plan = *std::move(tapped);
   }
-  auto session = Session::Create(plan, {.threads = options.threads, .profile = options.profile});
+  auto session = Session::Create(plan, SessionOptionsOf(options));
   if (!session.ok()) return session.status();
 
   Items items{**session, options, report, {}};

@@ -58,6 +58,8 @@ struct RunOptions {
   int repeat = 1;        ///< how often each segment runs; the report holds every time
   bool profile = false;  ///< fills RunReport::ops
   Sampling sampling{};
+  /// A plan of less work runs on the caller's thread alone.
+  double least_shared_flops = kLeastSharedFlops;
   bool taps = false;  ///< adds every named intermediate to the outputs, as "tap/<name>"
   /// Called after each segment, from the calling thread.
   std::function<void(std::size_t done, std::size_t total)> progress{};

@@ -48,6 +48,14 @@ Status CheckSameRows(const Arrays& inputs, const std::string& name, const std::s
                                      std::to_string(expected));
 }
 
+SessionOptions SessionOptionsOf(const RunOptions& options) {
+  SessionOptions made;
+  made.threads = options.threads;
+  made.profile = options.profile;
+  made.least_shared_flops = options.least_shared_flops;
+  return made;
+}
+
 Status NotPlanned() {
   return Status(Code::kInvalidArgument,
                 "network: made without a plan, expected NetworkOptions::plan to run it");

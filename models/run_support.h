@@ -24,6 +24,9 @@ Status CheckOptions(const RunOptions& options);
 Status CheckSameRows(const Arrays& inputs, const std::string& name, const std::string& other,
                      const std::string& rows);
 
+/// What a session of such a run is created with.
+SessionOptions SessionOptionsOf(const RunOptions& options);
+
 /// The error of running a network that was made with NetworkOptions::plan = false.
 Status NotPlanned();
 

@@ -5,13 +5,18 @@
 namespace gestus {
 namespace {
 
-// Each block turns all keys round once more, which 256 rows make small.
+// Each block packs all keys and values once more, which 256 rows make small.
 constexpr std::size_t kQueryBlock = 256;
+
+bool UsesBf16(const Node& node, const kernels::KernelTable& kernels) {
+  return node.narrow && kernels.bf16 != nullptr && kernels.bf16->attention != nullptr;
+}
 
 class AttentionOp final : public BoundOp {
  public:
   explicit AttentionOp(const Binding& b)
-      : kernels_(*b.kernels),
+      : attention_(UsesBf16(*b.node, *b.kernels) ? b.kernels->bf16->attention
+                                                 : b.kernels->f32_attention),
         q_(b.in[0]),
         k_(b.in[1]),
         v_(b.in[2]),
@@ -52,10 +57,10 @@ class AttentionOp final : public BoundOp {
     args.causal = causal_;
     args.first_row = first;
     args.scratch = scratch_ + static_cast<std::size_t>(worker.index) * scratch_stride_;
-    kernels_.f32_attention(args);
+    attention_(args);
   }
 
-  const kernels::KernelTable& kernels_;
+  void (*attention_)(const kernels::AttentionArgs&);
   Ref q_, k_, v_, out_;
   const float* key_bias_;
   std::size_t heads_;
@@ -74,10 +79,11 @@ std::size_t AttentionScratch(const Node& node, const std::vector<ValueInfo>& val
   };
   const Shape &q = shape(0), &k = shape(1), &v = shape(2);
   const auto rows = static_cast<std::size_t>(q[q.rank() - 2]);
-  return kernels.f32_attention_scratch(rows < kQueryBlock ? rows : kQueryBlock,
-                                       static_cast<std::size_t>(k[k.rank() - 2]),
-                                       static_cast<std::size_t>(q.Cols() / node.heads),
-                                       static_cast<std::size_t>(v.Cols() / node.heads));
+  const auto scratch =
+      UsesBf16(node, kernels) ? kernels.bf16->attention_scratch : kernels.f32_attention_scratch;
+  return scratch(rows < kQueryBlock ? rows : kQueryBlock, static_cast<std::size_t>(k[k.rank() - 2]),
+                 static_cast<std::size_t>(q.Cols() / node.heads),
+                 static_cast<std::size_t>(v.Cols() / node.heads));
 }
 
 std::unique_ptr<BoundOp> BindAttention(const Binding& b) {

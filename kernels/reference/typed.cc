@@ -179,6 +179,8 @@ constexpr ProductKernels Products() {
       lstm_pack<W>,
       lstm_step<W>,
       gather<W>,
+      nullptr,
+      nullptr,
   };
 }
 

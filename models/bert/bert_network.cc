@@ -180,7 +180,7 @@ Result<Session*> BertNetwork::SessionFor(std::int64_t length, const RunOptions& 
   if (session == nullptr) {
     auto plan = MakePlan(length, options.taps);
     if (!plan.ok()) return plan.status();
-    auto made = Session::Create(*plan, {.threads = options.threads, .profile = options.profile});
+    auto made = Session::Create(*plan, SessionOptionsOf(options));
     if (!made.ok()) return made.status();
     session = *std::move(made);
   }

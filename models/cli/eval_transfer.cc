@@ -92,9 +92,9 @@ class MotionArrays {
 };
 
 /// Runs the classifier over one sequence; one without all the points is noted.
-Status Count(models::Network* network, const Arguments& arguments, const MotionArrays& arrays,
-             const Sequence& sequence, std::vector<std::string>* notes,
-             std::optional<metrics::TransferStrength>* strength) {
+Status Classify(models::Network* network, const Arguments& arguments, const MotionArrays& arrays,
+                const Sequence& sequence, std::vector<std::string>* notes,
+                std::optional<metrics::TransferStrength>* strength) {
   if (!*strength) strength->emplace();
   Array motion = arrays.Of(sequence);
   if (motion.shape[0] == 0) {
@@ -119,14 +119,14 @@ Status CountAll(models::Network* network, const Arguments& arguments, const Moti
     const Sequence& prediction = *material->cases[i].of[kPrediction];
     auto& strength = evaluation->sequences[i].transfer[kPrediction];
     GESTUS_RETURN_IF_ERROR(
-        Count(network, arguments, arrays, prediction, &material->notes, &strength));
+        Classify(network, arguments, arrays, prediction, &material->notes, &strength));
     if (!whole.transfer[kPrediction]) whole.transfer[kPrediction].emplace();
     whole.transfer[kPrediction]->Add(*strength);
   }
   for (const Role role : {kSource, kTarget}) {
     for (const Sequence& sequence : material->sequences[role])
       GESTUS_RETURN_IF_ERROR(
-          Count(network, arguments, arrays, sequence, &material->notes, &whole.transfer[role]));
+          Classify(network, arguments, arrays, sequence, &material->notes, &whole.transfer[role]));
   }
   return Status();
 }

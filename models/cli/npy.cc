@@ -16,8 +16,6 @@ using models::Array;
 constexpr std::size_t kMaxHeader = 10000;     // characters; numpy's own limit
 constexpr std::size_t kChunkBytes = 1 << 16;  // a multiple of every element size
 
-Status Bad(const std::string& sentence) { return Status(Code::kBadInput, sentence); }
-
 // Elements are copied, never cast in place: in an .npz they start at odd offsets.
 std::uint64_t LoadBits(const std::uint8_t* p, std::size_t size, bool big_endian) {
   std::uint64_t bits = 0;
@@ -101,7 +99,7 @@ Status ReadExactly(const ByteReader& read, void* data, std::size_t size) {
     const Result<std::size_t> n = read(bytes, size);
     if (!n.ok()) return n.status();
     if (*n == 0)
-      return Bad("ends " + std::to_string(size) + " bytes early, expected a whole array");
+      return BadInput("ends " + std::to_string(size) + " bytes early, expected a whole array");
     bytes += *n;
     size -= *n;
   }
@@ -113,23 +111,23 @@ Result<NpyHeader> ReadHeader(const ByteReader& read, std::uint64_t total_size,
                              std::uint64_t* consumed) {
   std::uint8_t start[8];
   if (total_size < sizeof(start)) {
-    return Bad(std::to_string(total_size) + " bytes, expected a .npy array");
+    return BadInput(std::to_string(total_size) + " bytes, expected a .npy array");
   }
   GESTUS_RETURN_IF_ERROR(ReadExactly(read, start, sizeof(start)));
   if (std::memcmp(start, "\x93NUMPY", 6) != 0) {
-    return Bad("does not start with \\x93NUMPY, expected a .npy array");
+    return BadInput("does not start with \\x93NUMPY, expected a .npy array");
   }
   if (start[6] < 1 || start[6] > 3 || start[7] != 0) {
-    return Bad(".npy format version " + std::to_string(start[6]) + "." + std::to_string(start[7]) +
-               ", expected 1.0, 2.0 or 3.0");
+    return BadInput(".npy format version " + std::to_string(start[6]) + "." +
+                    std::to_string(start[7]) + ", expected 1.0, 2.0 or 3.0");
   }
   std::uint8_t length_bytes[4];
   const std::size_t length_size = start[6] == 1 ? 2 : 4;
   GESTUS_RETURN_IF_ERROR(ReadExactly(read, length_bytes, length_size));
   const std::uint64_t length = LoadBits(length_bytes, length_size, /*big_endian=*/false);
   if (length > kMaxHeader) {
-    return Bad("header of " + std::to_string(length) + " bytes, expected at most " +
-               std::to_string(kMaxHeader));
+    return BadInput("header of " + std::to_string(length) + " bytes, expected at most " +
+                    std::to_string(kMaxHeader));
   }
   std::string text(length, '\0');
   GESTUS_RETURN_IF_ERROR(ReadExactly(read, text.data(), text.size()));
@@ -141,19 +139,19 @@ Status CheckHeader(const NpyHeader& header, std::uint64_t data_bytes, DType want
                    std::uint64_t max_bytes) {
   const bool is_float = header.kind == NpyKind::kFloat;
   if (is_float != (wanted == DType::kF32)) {
-    return Bad(header.TypeName() + " " + ShapeText(header.shape) + ", expected " +
-               (wanted == DType::kF32 ? "float32 (float16 and float64 are converted)"
-                                      : "int32 (other integers and bool are converted)"));
+    return BadInput(header.TypeName() + " " + ShapeText(header.shape) + ", expected " +
+                    (wanted == DType::kF32 ? "float32 (float16 and float64 are converted)"
+                                           : "int32 (other integers and bool are converted)"));
   }
   const std::uint64_t expected = header.elements * header.item_size;
   if (data_bytes != expected) {
-    return Bad(std::to_string(data_bytes) + " bytes of elements, expected " +
-               std::to_string(expected) + " for " + header.TypeName() + " " +
-               ShapeText(header.shape));
+    return BadInput(std::to_string(data_bytes) + " bytes of elements, expected " +
+                    std::to_string(expected) + " for " + header.TypeName() + " " +
+                    ShapeText(header.shape));
   }
   if (header.elements > max_bytes / 4) {
-    return Bad(header.TypeName() + " " + ShapeText(header.shape) + ", expected at most " +
-               std::to_string(max_bytes) + " bytes in memory");
+    return BadInput(header.TypeName() + " " + ShapeText(header.shape) + ", expected at most " +
+                    std::to_string(max_bytes) + " bytes in memory");
   }
   return Status();
 }
@@ -192,9 +190,10 @@ Status ReadElements(const ByteReader& read, const NpyHeader& header, Array* arra
                                    ? AppendFloats(header, chunk.data(), count, &array->f32)
                                    : AppendInts(header, chunk.data(), count, &array->i32);
     if (fitted < count) {
-      return Bad("the number at " + IndexText(header.shape, done + fitted, header.fortran_order) +
-                 " is out of range, expected one that fits " +
-                 (header.kind == NpyKind::kBool ? "a bool" : Name(array->dtype)));
+      return BadInput("the number at " +
+                      IndexText(header.shape, done + fitted, header.fortran_order) +
+                      " is out of range, expected one that fits " +
+                      (header.kind == NpyKind::kBool ? "a bool" : Name(array->dtype)));
     }
     done += count;
   }
@@ -208,7 +207,7 @@ Result<Array> ReadNpy(const ByteReader& read, std::uint64_t total_size, DType wa
   std::uint64_t header_bytes = 0;
   Result<NpyHeader> header = ReadHeader(read, total_size, &header_bytes);
   if (!header.ok()) return header.status();
-  if (total_size < header_bytes) return Bad("ends inside its header, expected a whole array");
+  if (total_size < header_bytes) return BadInput("ends inside its header, expected a whole array");
   GESTUS_RETURN_IF_ERROR(CheckHeader(*header, total_size - header_bytes, wanted, max_bytes));
 
   Array array;
@@ -219,7 +218,8 @@ Result<Array> ReadNpy(const ByteReader& read, std::uint64_t total_size, DType wa
   std::uint8_t extra = 0;
   const Result<std::size_t> rest = read(&extra, 1);
   if (!rest.ok()) return rest.status();
-  if (*rest != 0) return Bad("more bytes than declared, expected " + std::to_string(total_size));
+  if (*rest != 0)
+    return BadInput("more bytes than declared, expected " + std::to_string(total_size));
 
   if (header->fortran_order && header->shape.size() > 1) {
     wanted == DType::kF32 ? ToCOrder(array.shape, &array.f32) : ToCOrder(array.shape, &array.i32);

@@ -13,8 +13,6 @@ namespace {
 
 constexpr std::size_t kMaxRank = 32;  // numpy's own limit
 
-Status Bad(const std::string& sentence) { return Status(Code::kBadInput, sentence); }
-
 // A cursor over the literal.  Every method takes what it names or leaves the cursor in place.
 class Scanner {
  public:
@@ -114,8 +112,8 @@ Status ParseDescr(std::string_view descr, NpyHeader* header) {
   const bool known = std::find(std::begin(kCodes), std::end(kCodes), code) != std::end(kCodes);
   const auto item_size = known ? static_cast<std::size_t>(code[1] - '0') : 0;
   if (!known || (order == '|' && item_size > 1)) {
-    return Bad("dtype '" + std::string(descr.substr(0, 40)) + "'" + WhyNot(code) +
-               ", expected float16 to 64, int8 to 64, uint8 to 64 or bool");
+    return BadInput("dtype '" + std::string(descr.substr(0, 40)) + "'" + WhyNot(code) +
+                    ", expected float16 to 64, int8 to 64, uint8 to 64 or bool");
   }
   header->kind = static_cast<NpyKind>(code[0]);
   header->item_size = item_size;
@@ -126,8 +124,8 @@ Status ParseDescr(std::string_view descr, NpyHeader* header) {
 // "(3, 4)", "(3,)" or "()"; a single number needs its comma, as in Python.
 Status ParseShape(Scanner* scanner, NpyHeader* header) {
   const Status bad =
-      Bad("header: malformed 'shape' at byte " + std::to_string(scanner->position()) +
-          ", expected a tuple of whole numbers such as (64, 768) or (64,)");
+      BadInput("header: malformed 'shape' at byte " + std::to_string(scanner->position()) +
+               ", expected a tuple of whole numbers such as (64, 768) or (64,)");
   if (!scanner->Take('(')) return bad;
   bool comma = true;
   while (!scanner->Take(')')) {
@@ -138,8 +136,8 @@ Status ParseShape(Scanner* scanner, NpyHeader* header) {
   }
   if (header->shape.size() == 1 && !comma) return bad;
   if (header->shape.size() > kMaxRank) {
-    return Bad("header: " + std::to_string(header->shape.size()) +
-               " dimensions, expected at most " + std::to_string(kMaxRank));
+    return BadInput("header: " + std::to_string(header->shape.size()) +
+                    " dimensions, expected at most " + std::to_string(kMaxRank));
   }
   return Status();
 }
@@ -155,7 +153,7 @@ Status CountElements(NpyHeader* header) {
     empty |= size == 0;
     if (size == 0) continue;
     if (size > left) {
-      return Bad("shape " + ShapeText(header->shape) + ", expected less than 2^63 bytes");
+      return BadInput("shape " + ShapeText(header->shape) + ", expected less than 2^63 bytes");
     }
     left /= size;
     header->elements *= size;
@@ -167,28 +165,28 @@ Status CountElements(NpyHeader* header) {
 Status ParseEntry(Scanner* scanner, NpyHeader* header, unsigned* seen) {
   const std::optional<std::string_view> key = scanner->TakeString();
   if (!key || !scanner->Take(':')) {
-    return Bad("header: malformed at byte " + std::to_string(scanner->position()) +
-               ", expected 'key': value");
+    return BadInput("header: malformed at byte " + std::to_string(scanner->position()) +
+                    ", expected 'key': value");
   }
   const unsigned bit = *key == "descr"           ? 1U
                        : *key == "fortran_order" ? 2U
                        : *key == "shape"         ? 4U
                                                  : 0U;
   if (bit == 0 || (*seen & bit) != 0) {
-    return Bad("header: key '" + std::string(key->substr(0, 40)) + "' " +
-               (bit == 0 ? "is unknown" : "comes twice") +
-               ", expected descr, fortran_order and shape, once each");
+    return BadInput("header: key '" + std::string(key->substr(0, 40)) + "' " +
+                    (bit == 0 ? "is unknown" : "comes twice") +
+                    ", expected descr, fortran_order and shape, once each");
   }
   *seen |= bit;
   if (bit == 1U) {
     const std::optional<std::string_view> descr = scanner->TakeString();
-    if (!descr) return Bad("dtype is not a string (structured?), expected plain numbers");
+    if (!descr) return BadInput("dtype is not a string (structured?), expected plain numbers");
     return ParseDescr(*descr, header);
   }
   if (bit == 4U) return ParseShape(scanner, header);
   header->fortran_order = scanner->TakeWord("True");
   if (!header->fortran_order && !scanner->TakeWord("False")) {
-    return Bad("header: malformed 'fortran_order', expected True or False");
+    return BadInput("header: malformed 'fortran_order', expected True or False");
   }
   return Status();
 }
@@ -199,18 +197,18 @@ Result<NpyHeader> ParseNpyDict(std::string_view text, int version) {
   Scanner scanner(text, /*allow_long=*/version < 3);
   NpyHeader header;
   unsigned seen = 0;
-  if (!scanner.Take('{')) return Bad("header: no '{', expected a Python dictionary");
+  if (!scanner.Take('{')) return BadInput("header: no '{', expected a Python dictionary");
   bool comma = true;
   while (!scanner.Take('}')) {
     if (!comma) {
-      return Bad("header: malformed at byte " + std::to_string(scanner.position()) +
-                 ", expected ',' or '}'");
+      return BadInput("header: malformed at byte " + std::to_string(scanner.position()) +
+                      ", expected ',' or '}'");
     }
     GESTUS_RETURN_IF_ERROR(ParseEntry(&scanner, &header, &seen));
     comma = scanner.Take(',');
   }
-  if (!scanner.AtEnd()) return Bad("header: text after '}', expected only spaces");
-  if (seen != 7U) return Bad("header: lacks a key, expected descr, fortran_order and shape");
+  if (!scanner.AtEnd()) return BadInput("header: text after '}', expected only spaces");
+  if (seen != 7U) return BadInput("header: lacks a key, expected descr, fortran_order and shape");
   GESTUS_RETURN_IF_ERROR(CountElements(&header));
   return header;
 }

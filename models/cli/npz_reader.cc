@@ -33,8 +33,6 @@ struct Member {
   std::uint64_t packed_size = 0;
 };
 
-Status Bad(const std::string& sentence) { return Status(Code::kBadInput, sentence); }
-
 std::string ZipErrorText(int code) {
   zip_error_t error;
   zip_error_init_with_code(&error, code);
@@ -50,7 +48,7 @@ bool StartsWith(int fd, const char* magic, std::size_t size) {
 }
 
 Result<Archive*> Open(InputFile* file, Archive* archive) {
-  if (file->size == 0) return Bad("is empty, expected an .npz file");
+  if (file->size == 0) return BadInput("is empty, expected an .npz file");
   const bool is_zip = StartsWith(file->fd.get(), "PK", 2);
   int code = 0;
   // ZIP_CHECKCONS compares each local header with the central directory.
@@ -59,9 +57,10 @@ Result<Archive*> Open(InputFile* file, Archive* archive) {
     file->fd.Release();  // libzip owns it now
     return archive;
   }
-  if (code != ZIP_ER_NOZIP) return Bad(ZipErrorText(code) + ", expected an .npz file");
-  return is_zip ? Bad("is a zip file without an end (truncated?), expected a complete .npz file")
-                : Bad("is not a zip file, expected an .npz file");
+  if (code != ZIP_ER_NOZIP) return BadInput(ZipErrorText(code) + ", expected an .npz file");
+  return is_zip
+             ? BadInput("is a zip file without an end (truncated?), expected a complete .npz file")
+             : BadInput("is not a zip file, expected an .npz file");
 }
 
 // "NAME.npy"; folders are allowed in names (infer-cli writes "tap/..."), ways out of them are not.
@@ -87,24 +86,25 @@ Result<Member> Stat(zip_t* archive, zip_uint64_t index) {
                                    ZIP_STAT_COMP_METHOD | ZIP_STAT_ENCRYPTION_METHOD;
   if (zip_stat_index(archive, index, ZIP_FL_ENC_RAW, &stat) != 0 ||
       (stat.valid & kNeeded) != kNeeded) {
-    return Bad("member " + std::to_string(index) + ": " + zip_strerror(archive));
+    return BadInput("member " + std::to_string(index) + ": " + zip_strerror(archive));
   }
   Member member;
   member.name = stat.name;
-  if (!IsArrayName(member.name)) return Bad(member.name + ": unusual name, expected NAME.npy");
+  if (!IsArrayName(member.name)) return BadInput(member.name + ": unusual name, expected NAME.npy");
   member.name.resize(member.name.size() - 4);
   member.index = index;
   member.size = stat.size;
   member.packed_size = stat.comp_size;
-  if (stat.encryption_method != ZIP_EM_NONE) return Bad(member.name + ": encrypted, expected not");
+  if (stat.encryption_method != ZIP_EM_NONE)
+    return BadInput(member.name + ": encrypted, expected not");
   const bool stored = stat.comp_method == ZIP_CM_STORE;
   if (!stored && stat.comp_method != ZIP_CM_DEFLATE) {
-    return Bad(member.name + ": zip compression method " + std::to_string(stat.comp_method) +
-               ", expected stored (0) or deflate (8)");
+    return BadInput(member.name + ": zip compression method " + std::to_string(stat.comp_method) +
+                    ", expected stored (0) or deflate (8)");
   }
   if (stored && stat.size != stat.comp_size) {
-    return Bad(member.name + ": " + std::to_string(stat.comp_size) + " bytes stored, expected " +
-               std::to_string(stat.size));
+    return BadInput(member.name + ": " + std::to_string(stat.comp_size) +
+                    " bytes stored, expected " + std::to_string(stat.size));
   }
   return member;
 }
@@ -113,8 +113,8 @@ Result<Member> Stat(zip_t* archive, zip_uint64_t index) {
 Result<std::vector<Member>> List(zip_t* archive, std::uint64_t file_size, const NpzLimits& limits) {
   const auto count = static_cast<std::uint64_t>(zip_get_num_entries(archive, 0));
   if (count > limits.max_members) {
-    return Bad(std::to_string(count) + " members, expected at most " +
-               std::to_string(limits.max_members));
+    return BadInput(std::to_string(count) + " members, expected at most " +
+                    std::to_string(limits.max_members));
   }
   std::vector<Member> members;
   std::vector<std::string> names;
@@ -124,7 +124,7 @@ Result<std::vector<Member>> List(zip_t* archive, std::uint64_t file_size, const 
     if (!member.ok()) return member.status();
     // Together more than the file: members that share their bytes, as zip bombs do.
     if (member->packed_size > file_size - packed) {
-      return Bad(member->name + ": overlaps other members, expected members side by side");
+      return BadInput(member->name + ": overlaps other members, expected members side by side");
     }
     packed += member->packed_size;
     names.push_back(member->name);
@@ -132,7 +132,7 @@ Result<std::vector<Member>> List(zip_t* archive, std::uint64_t file_size, const 
   }
   std::sort(names.begin(), names.end());
   const auto twice = std::adjacent_find(names.begin(), names.end());
-  if (twice != names.end()) return Bad(*twice + ": there twice, expected once");
+  if (twice != names.end()) return BadInput(*twice + ": there twice, expected once");
   return members;
 }
 
@@ -141,20 +141,21 @@ Status CheckRatio(const Member& member, const NpzLimits& limits) {
       member.size / limits.max_ratio <= member.packed_size) {
     return Status();
   }
-  return Bad(std::to_string(member.packed_size) + " bytes inflate to " +
-             std::to_string(member.size) + " (a zip bomb?), expected at most " +
-             std::to_string(limits.max_ratio) + " times as many");
+  return BadInput(std::to_string(member.packed_size) + " bytes inflate to " +
+                  std::to_string(member.size) + " (a zip bomb?), expected at most " +
+                  std::to_string(limits.max_ratio) + " times as many");
 }
 
 Result<Array> ReadMember(zip_t* archive, const Member& member, DType dtype, std::uint64_t max_bytes,
                          const NpzLimits& limits) {
   GESTUS_RETURN_IF_ERROR(CheckRatio(member, limits));
   const MemberFile file(zip_fopen_index(archive, member.index, 0));
-  if (file == nullptr) return Bad(std::string(zip_strerror(archive)) + ", expected a whole member");
+  if (file == nullptr)
+    return BadInput(std::string(zip_strerror(archive)) + ", expected a whole member");
   const ByteReader read = [&file](void* data, std::size_t size) -> Result<std::size_t> {
     const zip_int64_t n = zip_fread(file.get(), data, size);
     if (n >= 0) return static_cast<std::size_t>(n);
-    return Bad(std::string(zip_file_strerror(file.get())) + ", expected an undamaged member");
+    return BadInput(std::string(zip_file_strerror(file.get())) + ", expected an undamaged member");
   };
   return ReadNpy(read, member.size, dtype, max_bytes);
 }
@@ -179,8 +180,8 @@ Result<NpzContents> ReadWanted(zip_t* archive, const std::vector<Member>& member
                                      [&](const Member& m) { return m.name == spec.name; });
     if (member == members.end()) {
       if (!spec.required) continue;
-      return Bad(spec.name + ": missing, found " + NameList(members) + ", expected an array " +
-                 spec.name);
+      return BadInput(spec.name + ": missing, found " + NameList(members) + ", expected an array " +
+                      spec.name);
     }
     Result<Array> array = ReadMember(archive, *member, spec.dtype, left, limits);
     if (!array.ok()) return array.status().In(spec.name);
@@ -204,8 +205,8 @@ Result<NpzContents> ReadBare(const InputFile& file, const std::vector<ArraySpec>
     if (spec.required && ++required == 1) only = &spec;
   }
   if (required != 1) {
-    return Bad("is a single .npy array, expected an .npz file" +
-               (required == 0 ? "" : " with " + std::to_string(required) + " arrays"));
+    return BadInput("is a single .npy array, expected an .npz file" +
+                    (required == 0 ? "" : " with " + std::to_string(required) + " arrays"));
   }
   const ByteReader read = [&file](void* data, std::size_t size) -> Result<std::size_t> {
     const ssize_t n = ::read(file.fd.get(), data, size);

@@ -19,8 +19,6 @@ namespace {
 constexpr double kMaxValue = 1e6;
 constexpr double kMaxNumber = 1e15;  // of frames and faces; whole numbers stay exact
 
-Status Bad(const std::string& what) { return Status(Code::kBadInput, what); }
-
 // The cell before the next comma, which is taken off `line`.
 std::string_view TakeCell(std::string_view* line) {
   const std::size_t comma = line->find(',');
@@ -66,7 +64,7 @@ Result<Columns> FindColumns(std::string_view header, const std::vector<std::stri
   columns.count = names.size();
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (!places.emplace(names[i], i).second && !names[i].empty()) {
-      return Bad("line 1: column " + Quoted(names[i]) + " is there twice, expected once");
+      return BadInput("line 1: column " + Quoted(names[i]) + " is there twice, expected once");
     }
     if (wanted.empty() && IsMotion(names[i])) columns.names.emplace_back(names[i]);
   }
@@ -76,11 +74,12 @@ Result<Columns> FindColumns(std::string_view header, const std::vector<std::stri
   };
   if (!wanted.empty()) columns.names = wanted;
   for (const std::string& name : columns.names) {
-    if (!place(name)) return Bad("has no column " + Quoted(name) + ", expected it of OpenFace");
+    if (!place(name))
+      return BadInput("has no column " + Quoted(name) + ", expected it of OpenFace");
     columns.values.push_back(*place(name));
   }
   if (columns.values.empty()) {
-    return Bad("line 1: has no columns like AU01_r or pose_Rx, expected OpenFace's header");
+    return BadInput("line 1: has no columns like AU01_r or pose_Rx, expected OpenFace's header");
   }
   columns.frame = place("frame");
   columns.face = place("face_id");
@@ -123,8 +122,8 @@ class TableReader {
     Split(line, &cells_);
     const std::string where = "line " + std::to_string(number);
     if (cells_.size() != columns_.count) {
-      return Bad(where + ": has " + Count(cells_.size(), "cell") + ", but the header has " +
-                 std::to_string(columns_.count));
+      return BadInput(where + ": has " + Count(cells_.size(), "cell") + ", but the header has " +
+                      std::to_string(columns_.count));
     }
     if (std::ssize(table->rows) == max_rows_) {
       return Status(
@@ -150,7 +149,7 @@ class TableReader {
  private:
   static Status NoNumber(const std::string& column, std::string_view cell,
                          const std::string& expected) {
-    return Bad("column " + Quoted(column) + ": " + Quoted(cell) + ", expected " + expected);
+    return BadInput("column " + Quoted(column) + ": " + Quoted(cell) + ", expected " + expected);
   }
 
   // A whole number, `value` as it is where there is no such column.
@@ -171,8 +170,8 @@ class TableReader {
     GESTUS_RETURN_IF_ERROR(Whole(columns_.frame, "frame", &row->frame));
     GESTUS_RETURN_IF_ERROR(Whole(columns_.face, "face_id", &row->face));
     if (!table->rows.empty() && row->frame < table->rows.back().frame) {
-      return Bad("frame " + std::to_string(row->frame) + " follows frame " +
-                 std::to_string(table->rows.back().frame) + ", expected ascending numbers");
+      return BadInput("frame " + std::to_string(row->frame) + " follows frame " +
+                      std::to_string(table->rows.back().frame) + ", expected ascending numbers");
     }
     double confidence = 1, success = 1, time = 0;
     if (columns_.confidence && !ParseNumber(cells_[*columns_.confidence], &confidence)) {
@@ -232,8 +231,8 @@ Status Fill(const Table& table, std::int64_t face, Track* track) {
     if (row.face != face) continue;
     const std::int64_t t = row.frame - first;
     if (t == last) {
-      return Bad("frame " + std::to_string(row.frame) + ": face " + std::to_string(face) +
-                 " is there twice, expected one row a frame and face");
+      return BadInput("frame " + std::to_string(row.frame) + ": face " + std::to_string(face) +
+                      " is there twice, expected one row a frame and face");
     }
     last = t;
     for (std::int64_t c = 0; c < columns; ++c) {
@@ -260,7 +259,7 @@ Status ReadTable(LineReader* lines, const OpenFaceOptions& options, Columns* col
     GESTUS_RETURN_IF_ERROR(reader.Add(line, lines->number(), table));
   }
   if (!more.ok()) return more.status();
-  if (table->rows.empty()) return Bad("has no rows, expected one for each frame");
+  if (table->rows.empty()) return BadInput("has no rows, expected one for each frame");
   return Status();
 }
 
@@ -309,8 +308,8 @@ Result<OpenFaceClip> Read(const std::string& path, const OpenFaceOptions& option
   GESTUS_RETURN_IF_ERROR(Fill(table, face, &clip.track));
   const std::vector<float>& confidence = clip.track.confidence;
   if (std::none_of(confidence.begin(), confidence.end(), [](float c) { return c > 0; })) {
-    return Bad("no face in any of " + Count(static_cast<std::uint64_t>(*frames), "frame") +
-               ", expected one with success 1");
+    return BadInput("no face in any of " + Count(static_cast<std::uint64_t>(*frames), "frame") +
+                    ", expected one with success 1");
   }
   Describe(table, face, faces, rate.has_value(), &clip);
   return clip;

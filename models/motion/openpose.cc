@@ -25,8 +25,6 @@ struct FrameFile {
   std::string path;
 };
 
-Status Bad(const std::string& what) { return Status(Code::kBadInput, what); }
-
 // "talk_000000000012_keypoints.json" to 12 and, in `before`, "talk_".
 Result<std::int64_t> FrameNumber(std::string_view name, std::string* before) {
   std::string_view digits = name.substr(0, name.size() - kEnd.size());
@@ -37,8 +35,8 @@ Result<std::int64_t> FrameNumber(std::string_view name, std::string* before) {
   std::int64_t number = 0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
   if (error != std::errc() || end != digits.data() + digits.size()) {
-    return Bad(std::string(name) + ": no frame number before " + std::string(kEnd) +
-               ", expected names like talk_000000000012_keypoints.json");
+    return BadInput(std::string(name) + ": no frame number before " + std::string(kEnd) +
+                    ", expected names like talk_000000000012_keypoints.json");
   }
   return number;
 }
@@ -60,8 +58,8 @@ Result<std::vector<FrameFile>> ListFrames(const std::string& folder,
       clip = before;
       clip_of = name;
     } else if (before != clip) {
-      return Bad("holds " + std::min(name, clip_of) + " and " + std::max(name, clip_of) +
-                 ", expected the frames of one clip");
+      return BadInput("holds " + std::min(name, clip_of) + " and " + std::max(name, clip_of) +
+                      ", expected the frames of one clip");
     }
     if (std::ssize(files) == options.max_frames) {
       return Status(Code::kResourceExhausted,
@@ -73,14 +71,15 @@ Result<std::vector<FrameFile>> ListFrames(const std::string& folder,
   }
   if (error) return Status(Code::kIo, "cannot be read (" + error.message() + ")");
   if (files.empty()) {
-    return Bad("holds no file named *<number>_keypoints.json, expected OpenPose's frames");
+    return BadInput("holds no file named *<number>_keypoints.json, expected OpenPose's frames");
   }
   std::sort(files.begin(), files.end(), [](const FrameFile& a, const FrameFile& b) {
     return std::tie(a.number, a.path) < std::tie(b.number, b.path);
   });
   for (std::size_t i = 1; i < files.size(); ++i) {
     if (files[i].number == files[i - 1].number) {
-      return Bad("frame " + std::to_string(files[i].number) + " is there twice, expected once");
+      return BadInput("frame " + std::to_string(files[i].number) +
+                      " is there twice, expected once");
     }
   }
   return files;
@@ -193,8 +192,9 @@ Result<OpenPoseClip> ReadOpenPose(const std::string& path, const OpenPoseOptions
                        [](float c) { return c > 0; });
   };
   if (!seen(clip.body)) {
-    return Bad(path + ": nobody in any of " + Count(static_cast<std::uint64_t>(*frames), "frame") +
-               ", expected a person with a body");
+    return BadInput(path + ": nobody in any of " +
+                    Count(static_cast<std::uint64_t>(*frames), "frame") +
+                    ", expected a person with a body");
   }
   if (!seen(clip.face)) {
     clip.face = Track();

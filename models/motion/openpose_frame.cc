@@ -16,8 +16,6 @@ namespace {
 // No camera has as many pixels; what lies outside is damage.
 constexpr double kMaxPixel = 1e6;
 
-Status Bad(const std::string& what) { return Status(Code::kBadInput, what); }
-
 std::string Found(const Json& value) {
   if (value.is_number()) return Significant(value.get<double>(), 6);
   return std::string("a JSON ") + value.type_name();
@@ -34,8 +32,8 @@ Status ReadPoints(const Json& array, const std::string& field, std::span<Point> 
       null |= value.is_null();
       triple[i] = value.is_number() ? value.get<double>() : 0;
       if (!(value.is_number() || value.is_null()) || !(std::fabs(triple[i]) <= kMaxPixel)) {
-        return Bad(field + "[" + std::to_string(3 * p + i) + "]: " + Found(value) +
-                   ", expected a number within 1000000 of 0");
+        return BadInput(field + "[" + std::to_string(3 * p + i) + "]: " + Found(value) +
+                        ", expected a number within 1000000 of 0");
       }
     }
     *nulls += null;
@@ -65,23 +63,23 @@ Result<Field> FindField(const Json& person, const std::string& where, const std:
   }
   if (field.array == nullptr || field.array->is_null()) return Field();
   if (!field.array->is_array()) {
-    return Bad(field.name + ": " + Found(*field.array) + ", expected an array of numbers");
+    return BadInput(field.name + ": " + Found(*field.array) + ", expected an array of numbers");
   }
   const std::size_t size = field.array->size();
   if (size == 0) return Field();
   for (const std::size_t count : counts) {
     if (size == 3 * count) return field;
   }
-  return Bad(field.name + ": has " + Count(size, "number") + ", expected " + expected);
+  return BadInput(field.name + ": has " + Count(size, "number") + ", expected " + expected);
 }
 
 // False in `*has_body` for someone of whom only a face or hands were looked for.
 Status ReadPerson(const Json& json, const std::string& where, Person* person, bool* has_body,
                   std::int64_t* nulls) {
   if (!json.is_object())
-    return Bad(where + ": " + Found(json) + ", expected a person's key points");
+    return BadInput(where + ": " + Found(json) + ", expected a person's key points");
   if (Member(json, "pose_keypoints_2d") == nullptr && Member(json, "pose_keypoints") == nullptr) {
-    return Bad(where + ": has no pose_keypoints_2d, expected OpenPose's key points");
+    return BadInput(where + ": has no pose_keypoints_2d, expected OpenPose's key points");
   }
   const Result<Field> pose =
       FindField(json, where, "pose_keypoints", {kBody25Points, kCoco18Points},
@@ -164,7 +162,7 @@ Result<OpenPoseFrame> ParseOpenPose(std::string_view text) {
   if (!json.ok()) return json.status();
   const Json* people = Member(*json, "people");
   if (people == nullptr || !people->is_array()) {
-    return Bad("has no array \"people\", expected a frame of OpenPose");
+    return BadInput("has no array \"people\", expected a frame of OpenPose");
   }
   OpenPoseFrame frame;
   for (std::size_t i = 0; i < people->size(); ++i) {

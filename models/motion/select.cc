@@ -10,30 +10,30 @@
 namespace gestus::motion {
 namespace {
 
-Status Bad(const std::string& what) { return Status(Code::kBadInput, what); }
-
 Status CheckPoints(const Track& track, std::int64_t points, const char* what) {
   if (track.coordinates == 2 && track.point_count() == points && track.frames > 0) return Status();
-  return Bad(std::string(what) + ": " + Count(static_cast<std::uint64_t>(track.frames), "frame") +
-             " of " + Count(static_cast<std::uint64_t>(track.point_count()), "point") +
-             ", expected frames of " + std::to_string(points));
+  return BadInput(std::string(what) + ": " +
+                  Count(static_cast<std::uint64_t>(track.frames), "frame") + " of " +
+                  Count(static_cast<std::uint64_t>(track.point_count()), "point") +
+                  ", expected frames of " + std::to_string(points));
 }
 
 Status CheckIndices(const std::vector<std::int32_t>& indices, std::int64_t count,
                     const char* noun) {
-  if (indices.empty()) return Bad(std::string("no ") + noun + "s, expected one at least");
+  if (indices.empty()) return BadInput(std::string("no ") + noun + "s, expected one at least");
   for (const std::int32_t i : indices) {
     if (i >= 0 && i < count) continue;
-    return Bad(std::string(noun) + " " + std::to_string(i) + ", expected 0 to " +
-               std::to_string(count - 1));
+    return BadInput(std::string(noun) + " " + std::to_string(i) + ", expected 0 to " +
+                    std::to_string(count - 1));
   }
   return Status();
 }
 
 Status CheckSeen(const Track& track, std::int64_t point) {
   if (track.Has(point)) return Status();
-  return Bad(track.points[static_cast<std::size_t>(point)] + " was not seen in any of " +
-             Count(static_cast<std::uint64_t>(track.frames), "frame") + ", but the pose needs it");
+  return BadInput(track.points[static_cast<std::size_t>(point)] + " was not seen in any of " +
+                  Count(static_cast<std::uint64_t>(track.frames), "frame") +
+                  ", but the pose needs it");
 }
 
 float Scale(const Stance& stance, PoseSource source) {
@@ -61,20 +61,20 @@ Status CheckStances(std::int64_t frames, std::span<const Stance> stances, bool o
   const auto n = std::ssize(stances);
   if (n == frames || (one_is_enough && n == 1)) {
     for (const Stance& s : stances) {
-      if (!(s.shoulder > 0)) return Bad("a shoulder of no length, expected one above 0");
+      if (!(s.shoulder > 0)) return BadInput("a shoulder of no length, expected one above 0");
     }
     return Status();
   }
-  return Bad(Count(stances.size(), "stance") + " for " +
-             Count(static_cast<std::uint64_t>(frames), "frame") + ", expected as many");
+  return BadInput(Count(stances.size(), "stance") + " for " +
+                  Count(static_cast<std::uint64_t>(frames), "frame") + ", expected as many");
 }
 
 // Pixels of `points` many relative points.
 Result<std::vector<float>> Absolute(std::span<const float> columns, std::size_t points,
                                     PoseSource source, std::span<const Stance> stances) {
   if (points == 0 || columns.size() % (2 * points) != 0) {
-    return Bad(Count(columns.size(), "value") + ", expected a multiple of " +
-               std::to_string(2 * points));
+    return BadInput(Count(columns.size(), "value") + ", expected a multiple of " +
+                    std::to_string(2 * points));
   }
   const std::size_t frames = columns.size() / (2 * points);
   GESTUS_RETURN_IF_ERROR(CheckStances(static_cast<std::int64_t>(frames), stances, true));
@@ -119,7 +119,7 @@ Result<Stances> FindStances(const Track& body) {
   const auto middle = sorted.begin() + std::ssize(sorted) / 2;
   std::nth_element(sorted.begin(), middle, sorted.end());
   if (!(*middle > 0)) {
-    return Bad("Neck and RShoulder are at one place in most frames, expected a distance");
+    return BadInput("Neck and RShoulder are at one place in most frames, expected a distance");
   }
   std::vector<std::uint8_t> long_enough;
   for (const float length : lengths) long_enough.push_back(length >= *middle / 10);

@@ -9,7 +9,7 @@
 namespace gestus::outputs {
 namespace {
 
-constexpr int kDigits = 6;
+constexpr int kArkitDigits = 6;
 // After the blendshapes: head, left eye and right eye, in Live Link Face's order of angles.
 constexpr const char* kRotations =
     ",HeadYaw,HeadPitch,HeadRoll,LeftEyeYaw,LeftEyePitch,LeftEyeRoll,RightEyeYaw,RightEyePitch,"
@@ -45,7 +45,7 @@ Status WriteArkit(const Motion& motion, const std::string& path) {
     std::string row = Timecode(t, rate) + ",61";
     const auto add = [&](double value) {
       row += ',';
-      AppendFixed(&row, value, kDigits);
+      AppendFixed(&row, value, kArkitDigits);
     };
     for (const Blendshape& shape : kBlendshapes)
       add(shape.unit == 0 ? 0 : face.Weight(t, shape.unit));

@@ -15,7 +15,7 @@
 namespace gestus::outputs {
 namespace {
 
-constexpr int kDigits = 6;
+constexpr int kBvhDigits = 6;
 // The end of a chain, for programs that draw bones: a share of the last bone.
 constexpr double kEndShare = 0.25;
 
@@ -23,7 +23,7 @@ std::string Numbers(std::initializer_list<double> values) {
   std::string text;
   for (const double value : values) {
     if (!text.empty()) text += ' ';
-    AppendFixed(&text, value, kDigits);
+    AppendFixed(&text, value, kBvhDigits);
   }
   return text;
 }
@@ -116,7 +116,7 @@ Status WriteBvh(const Motion& motion, const std::string& path, const FormatOptio
         const double angle =
             joint.bone == kNone ? 0 : angles[static_cast<std::size_t>(joint.bone)][axis];
         row += ' ';
-        AppendFixed(&row, angle * 180 / kPi, kDigits);
+        AppendFixed(&row, angle * 180 / kPi, kBvhDigits);
       }
     }
     GESTUS_RETURN_IF_ERROR(file->Add(row + "\n"));

@@ -8,6 +8,7 @@
 #include "models/io/text.h"
 #include "models/outputs/blendshapes.h"
 #include "models/outputs/face_curves.h"
+#include "models/outputs/joints.h"
 #include "models/outputs/writers.h"
 
 namespace gestus::outputs {
@@ -17,9 +18,6 @@ namespace {
 constexpr std::array<const char*, 11> kNames = {"openpose", "openface", "openface2", "csv",
                                                 "bvh",      "bvh3d",    "arkit",     "vrm",
                                                 "vrma",     "fap",      "bap"};
-
-// PATS' joints that turn bones of avatars.
-constexpr std::int64_t kRElbow = 2, kRWrist = 3, kLElbow = 5, kLWrist = 6, kNose = 7;
 
 // Larger values are no motion, and would overflow on the way to a file.
 constexpr float kMost = 1e9f;

@@ -6,10 +6,10 @@
 #include <cstdint>
 #include <utility>
 
+#include "models/outputs/joints.h"
+
 namespace gestus::outputs {
 namespace {
-
-constexpr std::int64_t kRElbow = 2, kRWrist = 3, kLElbow = 5, kLWrist = 6;  // PATS
 
 bool IsUpper(std::int64_t source) { return source == kRElbow || source == kLElbow; }
 bool IsFore(std::int64_t source) { return source == kRWrist || source == kLWrist; }

@@ -17,7 +17,7 @@ constexpr int kZeros = 11;  // columns of kGazeAndPlace
 constexpr std::array<int, 17> kUnits = {1,  2,  4,  5,  6,  7,  9,  10, 12,
                                         14, 15, 17, 20, 23, 25, 26, 45};
 // Plain digits: Greta's reader knows no exponents.
-constexpr int kDigits = 6;
+constexpr int kOpenfaceDigits = 6;
 
 std::string Header(bool with_keys) {
   std::string line = with_keys ? kKeys : "timestamp";
@@ -41,12 +41,12 @@ Status WriteOpenFace(const Motion& motion, const std::string& path, const Format
   const double scale = options.halve ? 0.5 : 1.0;
   for (std::int64_t t = 0; t < motion.frames; ++t) {
     std::string row = with_keys ? std::to_string(t + 1) + ",0," : "";
-    AppendFixed(&row, static_cast<double>(t) / motion.frame_rate, kDigits);
+    AppendFixed(&row, static_cast<double>(t) / motion.frame_rate, kOpenfaceDigits);
     if (with_keys) row += ",1,1";
     for (int i = 0; i < kZeros; ++i) row += ",0";
     const auto add = [&](double value) {
       row += ',';
-      AppendFixed(&row, value * scale, kDigits);
+      AppendFixed(&row, value * scale, kOpenfaceDigits);
     };
     for (int axis = 0; axis < 3; ++axis) add(face.Angle(t, axis));
     for (const int unit : kUnits) add(face.Unit(t, unit));

@@ -24,7 +24,7 @@ using motion::PoseSource;
 using motion::Stance;
 
 constexpr const char* kEnding = "_keypoints.json";
-constexpr int kDigits = 3;
+constexpr int kOpenposeDigits = 3;
 
 struct Pixel {
   float x = 0, y = 0;
@@ -41,9 +41,9 @@ void AppendField(const char* name, std::span<const Pixel> points, bool any, std:
       continue;
     }
     const std::size_t begin = text->size();
-    AppendFixed(text, points[i].x, kDigits);
+    AppendFixed(text, points[i].x, kOpenposeDigits);
     *text += ',';
-    AppendFixed(text, points[i].y, kDigits);
+    AppendFixed(text, points[i].y, kOpenposeDigits);
     // Readers take the corner of the picture for a point that was not found.
     if (std::string_view(*text).substr(begin) == "0.000,0.000") text->back() = '1';
     *text += ",1";

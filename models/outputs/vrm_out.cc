@@ -11,7 +11,7 @@
 namespace gestus::outputs {
 namespace {
 
-constexpr int kDigits = 6;
+constexpr int kVrmDigits = 6;
 
 }  // namespace
 
@@ -33,7 +33,7 @@ Status WriteVrm(const Motion& motion, const std::string& path) {
     std::string row = t == 0 ? "\n[" : ",\n[";
     for (std::size_t i = 0; i < shapes.size(); ++i) {
       if (i > 0) row += ',';
-      AppendFixed(&row, face.Weight(t, shapes[i]->unit), kDigits);
+      AppendFixed(&row, face.Weight(t, shapes[i]->unit), kVrmDigits);
     }
     GESTUS_RETURN_IF_ERROR(file->Add(row + "]"));
   }
@@ -43,7 +43,7 @@ Status WriteVrm(const Motion& motion, const std::string& path) {
     std::string row = t == 0 ? "\n[" : ",\n[";
     for (const double value : {q.x, q.y, q.z, q.w}) {
       if (row.back() != '[') row += ',';
-      AppendFixed(&row, value, kDigits);
+      AppendFixed(&row, value, kVrmDigits);
     }
     GESTUS_RETURN_IF_ERROR(file->Add(row + "]"));
   }

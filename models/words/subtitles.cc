@@ -67,7 +67,7 @@ bool IsSpoiltTiming(std::string_view line) {
          line.find(kArrow) != std::string_view::npos;
 }
 
-bool IsNumber(std::string_view line) {
+bool IsCueNumber(std::string_view line) {
   line = Trim(line);
   return !line.empty() && line.find_first_not_of("0123456789") == std::string_view::npos;
 }
@@ -99,7 +99,7 @@ class CueReader {
  private:
   void BeginCue(const Timing& timing) {
     // The line right before may be the cue's number or name.
-    if (pending_ && !pending_after_blank_ && !IsNumber(*pending_)) Flush();
+    if (pending_ && !pending_after_blank_ && !IsCueNumber(*pending_)) Flush();
     pending_.reset();
     cues_.push_back({timing.span, {}});
     skipping_ = false;

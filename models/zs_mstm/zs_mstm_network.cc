@@ -135,7 +135,7 @@ Result<std::unique_ptr<ZsMstmAgent>> ZsMstmNetwork::NewAgent(const RunOptions& o
     if (!made.ok()) return made.status();
     model = *std::move(made);
   }
-  return ZsMstm::NewAgent(model, {.threads = options.threads, .profile = options.profile});
+  return ZsMstm::NewAgent(model, SessionOptionsOf(options));
 }
 
 Status ZsMstmNetwork::RunStyle(const Arrays& inputs, const RunOptions& options, RunReport* report,

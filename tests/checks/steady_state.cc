@@ -132,7 +132,7 @@ Subject ZsMstmOf(const char* path, int threads) {
   if (!file.ok()) return Fail(file.status());
   const auto model = ZsMstm::Make(*file, "");
   if (!model.ok()) return Fail(model.status());
-  auto made = ZsMstm::NewAgent(*model, {.threads = threads});
+  auto made = ZsMstm::NewAgent(*model, {.threads = threads, .least_shared_flops = 0});
   if (!made.ok()) return Fail(made.status());
   const models::ZsMstmConfig& c = (*model)->config();
   const auto values = [&](std::int64_t cols) {
@@ -149,7 +149,7 @@ Subject ZsMstmOf(const char* path, int threads) {
 Subject EveryOpOf(int threads, DType weights) {
   auto model = std::make_shared<test::Model>(test::MakeEveryOp(kernels::BestTable(), {}, weights));
   if (model->plan == nullptr) return {};
-  auto made = Session::Create(model->plan, {.threads = threads});
+  auto made = Session::Create(model->plan, {.threads = threads, .least_shared_flops = 0});
   if (!made.ok()) return Fail(made.status());
   const std::shared_ptr<Session> session(std::move(*made));
   test::FillEveryOp(*session, 1);

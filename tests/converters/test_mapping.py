@@ -233,7 +233,10 @@ def test_verify_takes_the_map_and_keeps_what_accompanies_the_weights(tmp_path, m
         tmp_path / "config.json"), "--vocabulary", str(tmp_path / "vocab.txt"), "-o", file,
         *given]) == 0
 
-    def engine(_, path, inputs):
+    ran_on = []
+
+    def engine(_, path, inputs, isa):
+        ran_on.append(isa)
         read = weights_file.read(path)
         tensors = {key: read.tensors[key] for key in [*want, "vocabulary"]}
         return run(build(read.networks[0], tensors), inputs, taps=True)
@@ -241,6 +244,8 @@ def test_verify_takes_the_map_and_keeps_what_accompanies_the_weights(tmp_path, m
     monkeypatch.setattr(verify, "run_engine", engine)
     assert main(["verify", file, "--checkpoint", str(tmp_path / "m.pt"), *given]) == 0
     assert "hidden" in capfd.readouterr().out
+    assert main(["verify", file, "--isas", "sse2,avx2"]) == 0
+    assert ran_on == [None, "sse2", "avx2"]
 
     def poorer(*given):
         return {key: x for key, x in engine(*given).items() if key != "hidden"}

@@ -44,7 +44,9 @@ constexpr bool kEmulated = true;  // by qemu-user, which keeps memory of threads
 constexpr bool kEmulated = false;
 #endif
 
-std::unique_ptr<Session> MakeSession(const Model& model, const SessionOptions& options = {}) {
+// The model is small: by default it would never see another thread.
+std::unique_ptr<Session> MakeSession(const Model& model, SessionOptions options = {}) {
+  options.least_shared_flops = 0;
   auto session = Session::Create(model.plan, options);
   EXPECT_TRUE(session.ok()) << session.status().message();
   return session.ok() ? *std::move(session) : nullptr;
@@ -94,6 +96,7 @@ TEST_P(SessionTest, TheSameBytesForAnyNumberOfThreadsWithSmallWeights) {
 // Rounded weights give nearly what the others give: bf16 keeps 8 bits, int8 7 of the largest.
 TEST_P(SessionTest, SmallWeightsAreNearTheOthers) {
   const Model exact = MakeEveryOp(*table_);
+  EXPECT_EQ(exact.plan->ToString().find("attention("), std::string::npos);
   const std::vector<float> want = RunOn(*MakeSession(exact), 3);
   for (const DType dtype : {DType::kBF16, DType::kI8}) {
     const Model model = MakeEveryOp(*table_, {}, dtype);
@@ -106,7 +109,11 @@ TEST_P(SessionTest, SmallWeightsAreNearTheOthers) {
     }
     EXPECT_GT(difference, 0);
     EXPECT_LT(std::sqrt(difference / size), dtype == DType::kBF16 ? 0.02 : 0.05) << Name(dtype);
-    EXPECT_NE(model.plan->ToString().find(std::string("linear(") + Name(dtype)), std::string::npos);
+    const std::string plan = model.plan->ToString();
+    EXPECT_NE(plan.find(std::string("linear(") + Name(dtype)), std::string::npos);
+    // Between such products; what comes of a cache or a norm is attended to in float32.
+    EXPECT_NE(plan.find("attention(bf16)"), std::string::npos);
+    EXPECT_NE(plan.find("attention "), std::string::npos);
   }
 }
 
@@ -173,6 +180,21 @@ TEST(SessionsTest, SharedPoolServesSeveralSessions) {
   for (std::uint32_t run = 0; run < 20; ++run) {
     EXPECT_TRUE(SameBytes(RunOn(*a, run), RunOn(*solo, run)));
     EXPECT_TRUE(SameBytes(RunOn(*b, run + 1), RunOn(*solo, run + 1)));
+  }
+}
+
+TEST(SessionsTest, SmallPlansRunAlone) {
+  const Model model = MakeEveryOp(kernels::BestTable());
+  const double flops = model.plan->flops();
+  EXPECT_GT(flops, 0);
+  const struct {
+    double least;
+    int threads;
+  } cases[] = {{kLeastSharedFlops, 1}, {flops * 1.01, 1}, {flops * 0.99, 3}, {0, 3}};
+  for (const auto& c : cases) {
+    const auto session = Session::Create(model.plan, {.threads = 3, .least_shared_flops = c.least});
+    ASSERT_TRUE(session.ok());
+    EXPECT_EQ((*session)->threads(), c.threads) << c.least;
   }
 }
 
@@ -255,7 +277,7 @@ TEST(HostStateTest, DenormalsAreFlushedInEveryThread) {
   auto plan = Plan::Make(std::move(g), cache);
   ASSERT_TRUE(plan.ok());
   for (const int threads : {1, 4}) {
-    auto session = Session::Create(*plan, {.threads = threads});
+    auto session = Session::Create(*plan, {.threads = threads, .least_shared_flops = 0});
     ASSERT_TRUE(session.ok());
     const ValueView in = (*session)->Input("x"), out = (*session)->Output("y");
     std::fill(in.f32, in.f32 + 64 * 32, 2e-38f);

@@ -1,5 +1,7 @@
-// Attention: self and cross, causal with an offset, masked keys, odd and unequal head sizes.
+// Attention: self and cross, causal with an offset, masked keys, odd and unequal head sizes; in
+// float32, and in bf16 where a machine has that.
 #include "tests/kernels/kernel_test.h"
+#include "tests/kernels/typed_weights.h"
 
 namespace gestus::test {
 namespace {
@@ -18,9 +20,23 @@ struct Problem {
   float size = 1.0f;  // of the elements of q, k and v
 };
 
-void Attend(const kernels::KernelTable& table, const Problem& p, const Matrix& q, const Matrix& k,
+struct Kernel {
+  std::size_t (*scratch)(std::size_t rows, std::size_t keys, std::size_t head_dim,
+                         std::size_t value_dim);
+  void (*attend)(const AttentionArgs& args);
+  double weight_error = 0.0;  // of rounding the weights of values
+
+  static Kernel F32(const kernels::KernelTable& table) {
+    return {table.f32_attention_scratch, table.f32_attention};
+  }
+  static Kernel Bf16(const kernels::KernelTable& table) {
+    return {table.bf16->attention_scratch, table.bf16->attention, 1.0 / 256};
+  }
+};
+
+void Attend(const Kernel& kernel, const Problem& p, const Matrix& q, const Matrix& k,
             const Matrix& v, const Matrix& bias, Matrix* out) {
-  GuardedFloats scratch(table.f32_attention_scratch(p.rows, p.keys, p.head_dim, p.value_dim), 64);
+  GuardedFloats scratch(kernel.scratch(p.rows, p.keys, p.head_dim, p.value_dim), 64);
   AttentionArgs args;
   args.out = out->data();
   args.out_stride = out->stride();
@@ -39,30 +55,66 @@ void Attend(const kernels::KernelTable& table, const Problem& p, const Matrix& q
   args.causal = p.causal;
   args.first_row = p.first_row;
   args.scratch = scratch.data();
-  table.f32_attention(args);
+  kernel.attend(args);
 }
 
-void Check(const kernels::KernelTable& table, const kernels::KernelTable& reference,
-           const Problem& p, std::uint32_t seed) {
+// Elements are numbers of the kernel's type, so that it has nothing to round but its weights.
+void Check(const Kernel& kernel, const kernels::KernelTable& reference, const Problem& p,
+           std::uint32_t seed) {
   SCOPED_TRACE(::testing::Message()
                << "rows " << p.rows << " keys " << p.keys << " head " << p.head_dim << " value "
                << p.value_dim << " causal " << p.causal << " mask " << p.mask);
-  const Matrix q = Matrix::Random(p.rows, p.head_dim, p.gap, seed, p.size);
-  const Matrix k = Matrix::Random(p.keys, p.head_dim, p.gap, seed + 1, p.size);
-  const Matrix v = Matrix::Random(p.keys, p.value_dim, p.gap, seed + 2, p.size);
+  const auto random = [&](std::size_t rows, std::size_t cols, std::uint32_t n) {
+    Matrix m = Matrix::Random(rows, cols, p.gap, seed + n, p.size);
+    return kernel.weight_error > 0 ? RoundToBf16(std::move(m)) : std::move(m);
+  };
+  const Matrix q = random(p.rows, p.head_dim, 0), k = random(p.keys, p.head_dim, 1),
+               v = random(p.keys, p.value_dim, 2);
   Matrix bias(1, p.keys);
   for (std::size_t j = 0; j < p.keys; ++j) {
     bias(0, j) = p.mask == Problem::kAllKeys || j % 3 != 1 ? -kInf : 0.0f;
   }
   Matrix want(p.rows, p.value_dim), got(p.rows, p.value_dim, p.gap);
   want.set_seed(seed);
-  Attend(reference, p, q, k, v, bias, &want);
-  Attend(table, p, q, k, v, bias, &got);
-  const double allowed = AttentionTolerance({p.keys, p.head_dim, p.scale, p.size, p.size, p.size});
+  Attend(Kernel::F32(reference), p, q, k, v, bias, &want);
+  Attend(kernel, p, q, k, v, bias, &got);
+  const double allowed = AttentionTolerance({p.keys, p.head_dim, p.scale, p.size, p.size, p.size}) +
+                         kernel.weight_error * p.size;
   ASSERT_TRUE(Close(got, want, [=](std::size_t, std::size_t, double) { return allowed; }));
 }
 
-class AttentionTest : public KernelTest {};
+// The bits of a row must not depend on which rows it is computed with.
+void CheckRowsAlone(const Kernel& kernel, Problem p, std::uint32_t seed) {
+  const Matrix q = Matrix::Random(p.rows, p.head_dim, p.gap, seed),
+               k = Matrix::Random(p.keys, p.head_dim, p.gap, seed + 1),
+               v = Matrix::Random(p.keys, p.value_dim, p.gap, seed + 2);
+  Matrix bias(1, p.keys), together(p.rows, p.value_dim);
+  for (std::size_t j = 0; j < p.keys; ++j) bias(0, j) = j % 5 == 2 ? -kInf : 0.0f;
+  Attend(kernel, p, q, k, v, bias, &together);
+  const std::size_t rows = p.rows, first = p.first_row;
+  p.rows = 1;
+  for (std::size_t i = 0; i < rows; ++i) {
+    Matrix row(1, p.head_dim), alone(1, p.value_dim), want(1, p.value_dim);
+    for (std::size_t c = 0; c < p.head_dim; ++c) row(0, c) = q(i, c);
+    for (std::size_t c = 0; c < p.value_dim; ++c) want(0, c) = together(i, c);
+    p.first_row = first + i;
+    Attend(kernel, p, row, k, v, bias, &alone);
+    ASSERT_TRUE(Same(alone, want)) << "row " << i;
+  }
+}
+
+class AttentionTest : public KernelTest {
+ protected:
+  /// f(kernel) for each kernel of the table.
+  template <class F>
+  void ForEachType(const F& f) {
+    f(Kernel::F32(*table_));
+    if (table_->bf16 != nullptr && table_->bf16->attention != nullptr) f(Kernel::Bf16(*table_));
+  }
+  void CheckAll(const Problem& p, std::uint32_t seed) {
+    ForEachType([&](const Kernel& kernel) { Check(kernel, *reference_, p, seed); });
+  }
+};
 GESTUS_TEST_ON_EVERY_ISA(AttentionTest);
 
 // Two keys with scores 0 and ln 3: weights 1/4 and 3/4.
@@ -75,7 +127,7 @@ TEST_P(AttentionTest, KnownWeights) {
   v(0, 1) = 0.0f;
   v(1, 0) = 8.0f;
   v(1, 1) = -4.0f;
-  Attend(*table_, {1, 2, 1, 2, 0.5f}, q, k, v, bias, &got);
+  Attend(Kernel::F32(*table_), {1, 2, 1, 2, 0.5f}, q, k, v, bias, &got);
   EXPECT_NEAR(got(0, 0), 7.0f, 7 * 8 * kEps);
   EXPECT_NEAR(got(0, 1), -3.0f, 3 * 8 * kEps);
 }
@@ -84,16 +136,16 @@ TEST_P(AttentionTest, RealShapes) {
   const Problem shapes[] = {{62, 62, 64, 64}, {64, 64, 384, 384, 0.051f}, {64, 64, 22, 22, 0.2132f},
                             {1, 64, 64, 64},  {64, 62, 96, 64, 0.1f},     {128, 130, 64, 64}};
   std::uint32_t seed = 1;
-  for (const Problem& p : shapes) Check(*table_, *reference_, p, seed += 10);
+  for (const Problem& p : shapes) CheckAll(p, seed += 10);
 }
 
 TEST_P(AttentionTest, AwkwardSizes) {
   std::uint32_t seed = 1000;
   for (const std::size_t n : AwkwardSizes()) {
-    Check(*table_, *reference_, {5, n, 8, 8, 0.3f}, seed += 10);
-    Check(*table_, *reference_, {3, 11, n, 7, 0.1f}, seed += 10);
-    Check(*table_, *reference_, {3, 11, 7, n, 0.3f}, seed += 10);
-    if (n < 130) Check(*table_, *reference_, {n, 19, 12, 9, 0.3f}, seed += 10);
+    CheckAll({5, n, 8, 8, 0.3f}, seed += 10);
+    CheckAll({3, 11, n, 7, 0.1f}, seed += 10);
+    CheckAll({3, 11, 7, n, 0.3f}, seed += 10);
+    if (n < 130) CheckAll({n, 19, 12, 9, 0.3f}, seed += 10);
   }
 }
 
@@ -102,13 +154,40 @@ TEST_P(AttentionTest, CausalWithMasksAndStrides) {
   for (const auto mask : {Problem::kNoMask, Problem::kSomeKeys, Problem::kAllKeys}) {
     for (const std::size_t first : {0, 1, 30, 63}) {
       Problem p{17, 64, 22, 33, 0.2f, true, first, mask, 3};
-      Check(*table_, *reference_, p, seed += 10);
+      CheckAll(p, seed += 10);
       p.rows = 1;
-      Check(*table_, *reference_, p, seed += 10);
+      CheckAll(p, seed += 10);
     }
-    Check(*table_, *reference_, {64, 64, 64, 64, 0.125f, true, 0, mask}, seed += 10);
-    Check(*table_, *reference_, {31, 77, 64, 64, 0.125f, false, 0, mask, 1}, seed += 10);
+    CheckAll({64, 64, 64, 64, 0.125f, true, 0, mask}, seed += 10);
+    CheckAll({31, 77, 64, 64, 0.125f, false, 0, mask, 1}, seed += 10);
   }
+}
+
+TEST_P(AttentionTest, MoreKeysThanOnePanel) {
+  std::uint32_t seed = 9000;
+  for (const std::size_t keys : {65, 96, 127, 300, 1214}) {
+    CheckAll({30, keys, 64, 64}, seed += 10);
+    CheckAll({9, keys, 21, 35, 0.2f, true, keys - 9}, seed += 10);
+  }
+}
+
+TEST_P(AttentionTest, RowsAreTheSameAlone) {
+  ForEachType([&](const Kernel& kernel) {
+    CheckRowsAlone(kernel, {29, 77, 64, 64}, 1);
+    CheckRowsAlone(kernel, {40, 40, 16, 24, 0.25f, true}, 2);
+    CheckRowsAlone(kernel, {17, 130, 22, 33, 0.2f, true, 110, Problem::kSomeKeys, 3}, 3);
+  });
+}
+
+TEST_P(AttentionTest, NoKeysGiveZeros) {
+  const Problem p{3, 0, 8, 20, 0.3f};
+  const Matrix q = Matrix::Random(3, 8, 0, 1), none(0, 8), nothing(0, 20), bias(1, 1);
+  ForEachType([&](const Kernel& kernel) {
+    Matrix got(3, 20), zeros(3, 20);
+    zeros.Fill(0.0f);
+    Attend(kernel, p, q, none, nothing, bias, &got);
+    EXPECT_TRUE(Same(got, zeros));
+  });
 }
 
 TEST_P(AttentionTest, MaskedQueriesGiveZeros) {
@@ -117,7 +196,7 @@ TEST_P(AttentionTest, MaskedQueriesGiveZeros) {
   Matrix bias(1, 20), got(4, 16), zeros(4, 16);
   bias.Fill(-kInf);
   zeros.Fill(0.0f);
-  Attend(*table_, p, q, k, Matrix::Random(20, 16, 0, 3), bias, &got);
+  Attend(Kernel::F32(*table_), p, q, k, Matrix::Random(20, 16, 0, 3), bias, &got);
   EXPECT_TRUE(Same(got, zeros));
 }
 
@@ -132,7 +211,7 @@ TEST_P(AttentionTest, HugeScoresSelectOneKey) {
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t c = 0; c < 5; ++c) want(i, c) = v(23, c);
   }
-  Attend(*table_, p, q, k, v, bias, &got);
+  Attend(Kernel::F32(*table_), p, q, k, v, bias, &got);
   EXPECT_TRUE(Close(got, want, [](std::size_t, std::size_t, double) { return 2.0 * kEps; }));
 }
 
