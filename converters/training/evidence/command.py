@@ -18,9 +18,9 @@ def add(commands):
     parser.add_argument("--infer-cli", default=engine.DEFAULT, metavar="PROGRAM")
     parser.add_argument("--transfer", action="append", default=[], metavar="NETWORK",
                         help="a ZS-MSTM of the bundle")
-    parser.add_argument("--seen", type=int, default=60,
-                        help="seen styles to transfer to, spread over the list of speakers "
-                             "(default %(default)s)")
+    parser.add_argument("--styles", type=int, default=60,
+                        help="seen styles to transfer to, spread over the list of speakers; "
+                             "0: all (default %(default)s)")
     parser.add_argument("--sources", type=int, default=2,
                         help="speakers who are heard for each seen style (default %(default)s)")
     parser.add_argument("--unseen", type=int, default=8,
@@ -46,7 +46,7 @@ def _run(options):
         from . import transfer
         figures["transfer"][network] = {
             condition: transfer.evidence(found, network, condition, sources, most)
-            for condition, sources, most in (("seen", options.sources, options.seen),
+            for condition, sources, most in (("seen", options.sources, options.styles),
                                              ("unseen", options.unseen, None))}
     for text in options.face:
         from . import face
