@@ -18,7 +18,7 @@ def add(commands):
     parser.add_argument("--infer-cli", default=engine.DEFAULT, metavar="PROGRAM")
     parser.add_argument("--transfer", action="append", default=[], metavar="NETWORK",
                         help="a ZS-MSTM of the bundle")
-    parser.add_argument("--styles", type=int, default=60,
+    parser.add_argument("--styles", type=int, default=0,
                         help="seen styles to transfer to, spread over the list of speakers; "
                              "0: all (default %(default)s)")
     parser.add_argument("--sources", type=int, default=2,
