@@ -3,6 +3,7 @@
 corpus -> front end (BERT and dialog acts) -> features by the engine -> every model -> one bundle.
 """
 
+import concurrent.futures
 import json
 import pathlib
 import shlex
@@ -20,18 +21,18 @@ CONFIGS = pathlib.Path(__file__).resolve().parent / "configs"
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 # Name in the bundle, its configuration, minutes on one core at most, runs that it begins with.
+# The minutes are for slow machines: what is faster ends by its configuration's steps.
 MODELS = (
-    ("zs_mstm1", "demo_zs_mstm1", 45, {}),
-    ("model2", "demo_model2", 20, {}),
-    ("ae_speech", "demo_ae_speech", 2, {}),
-    ("ae_face", "demo_ae_face", 2, {}),
-    ("model1", "demo_model1", 5, {"ae_speech": "ae_speech", "ae_face": "ae_face"}),
-    ("zs_mstm2", "demo_zs_mstm2", 15, {}),
-    ("classifier", "demo_classifier", 3, {}),
+    ("zs_mstm1", "demo_zs_mstm1", 70, {}),
+    ("model2", "demo_model2", 45, {}),
+    ("ae_speech", "demo_ae_speech", 4, {}),
+    ("ae_face", "demo_ae_face", 4, {}),
+    ("model1", "demo_model1", 12, {"ae_speech": "ae_speech", "ae_face": "ae_face"}),
+    ("zs_mstm2", "demo_zs_mstm2", 20, {}),
+    ("classifier", "demo_classifier", 4, {}),
 )
 _ASKED = ("zs_mstm2",)  # trained only if --models names it: the demo has no use for it yet
-_FRONT_END = (("bert", "demo_bert", 6), ("acts", "demo_acts", 2))
-_HOURS = 2.4
+_FRONT_END = (("bert", "demo_bert", 12), ("acts", "demo_acts", 3))
 # Does it all fit together?  Nobody learns to gesture in three seconds.
 _SMOKE_CORPUS = ("--hours", 0.01, "--speakers", 2, "--unseen", 1, "--texts", 400)
 _SMOKE_MINUTES = 0.05
@@ -44,8 +45,11 @@ def add(commands):
     demo.add_argument("--infer-cli", required=True, metavar="PATH")
     demo.add_argument("-o", "--output", default="out/train", metavar="FOLDER")
     demo.add_argument("--seed", type=int, default=1)
-    demo.add_argument("--hours", type=float, help=f"of speech (default {_HOURS})")
+    demo.add_argument("--hours", type=float, help="of speech, if not as `corpus` has it")
     demo.add_argument("--models", help="names, separated by commas (default: all but zs_mstm2)")
+    demo.add_argument("--jobs", type=int, default=2,
+                      help="processes, of one thread each; trainings that need nothing of each "
+                           "other go on at once (default %(default)s)")
     demo.add_argument("--smoke", action="store_true",
                       help="minutes of speech and seconds of training, then motion of a held-out "
                            "recording: does it all fit together?")
@@ -59,8 +63,7 @@ def _demo(options):
     recipe.corpus()
     recipe.front_end()
     recipe.features()
-    for name, configuration, minutes, pretrained in recipe.models:
-        recipe.train(name, configuration, minutes, recipe.folder / "data", pretrained)
+    recipe.train(recipe.models, recipe.folder / "data")
     recipe.bundle()
     recipe.styles()
     if options.smoke:
@@ -81,13 +84,13 @@ class Recipe:
 
     def corpus(self):
         size = (_SMOKE_CORPUS if self.options.smoke
-                else ("--hours", self.options.hours or _HOURS))
+                else ("--hours", self.options.hours) if self.options.hours else ())
         self._step("corpus/index.json", "corpus", "-o", self.folder / "corpus", "--seed",
-                   self.options.seed, *size, "--infer-cli", self.options.infer_cli)
+                   self.options.seed, *size, "--jobs", self.options.jobs, "--infer-cli",
+                   self.options.infer_cli)
 
     def front_end(self):
-        for name, configuration, minutes in _FRONT_END:
-            self.train(name, configuration, minutes, self.folder / "corpus", {})
+        self.train([(*front_end, {}) for front_end in _FRONT_END], self.folder / "corpus")
         self._step("front_end.fb", "bundle", *(f"{name}={self.folder / name / 'weights.fb'}"
                                                for name, *_ in _FRONT_END),
                    "-o", self.folder / "front_end.fb", module="converters")
@@ -95,14 +98,32 @@ class Recipe:
     def features(self):
         self._step("data/dataset.json", "prepare", self.folder / "corpus", "--front-end",
                    self.folder / "front_end.fb", "--infer-cli", self.options.infer_cli,
-                   "-o", self.folder / "data")
+                   "--jobs", self.options.jobs, "-o", self.folder / "data")
 
-    def train(self, name, configuration, minutes, data, pretrained):
+    def train(self, models, data):
+        """Some at once, in the order of the list, of which a model needs none that comes later."""
+        started = {}
+        with concurrent.futures.ThreadPoolExecutor(self.options.jobs) as pool:
+            for model in models:
+                needed = [started[run] for run in model[3].values() if run in started]
+                started[model[0]] = pool.submit(self._train, model, data, needed)
+            try:
+                for future in started.values():
+                    future.result()
+            except ConvertError:
+                pool.shutdown(cancel_futures=True)
+                raise
+
+    def _train(self, model, data, needed):
+        name, configuration, minutes, pretrained = model
+        for future in needed:
+            future.result()
         limit = _SMOKE_MINUTES if self.options.smoke else minutes
         self._step(f"{name}/weights.fb", "train", CONFIGS / f"{configuration}.json", "--data", data,
                    "-o", self.folder / name, "--minutes", limit, "--seed", self.options.seed,
                    *(["--resume"] if self.options.resume else []),
-                   *(f"--pretrained={key}={self.folder / run}" for key, run in pretrained.items()))
+                   *(f"--pretrained={key}={self.folder / run}" for key, run in pretrained.items()),
+                   prefix=f"{name}: ")
 
     def bundle(self):
         """Everything in one file, with ZS-MSTM 1.0's discriminator; autoencoders are parts of
@@ -115,7 +136,7 @@ class Recipe:
                    self.folder / "demo.fb", module="converters")
 
     def styles(self):
-        """Of the liveliest and of the calmest speaker, for the demo."""
+        """Of the liveliest speaker and of a calm one, for the demo; the very calmest hardly move."""
         if "zs_mstm1" not in [name for name, *_ in self.models]:
             return
         found = Material(self.folder / "corpus", self.folder / "data", self.folder / "demo.fb",
@@ -123,7 +144,7 @@ class Recipe:
         known = json.loads((self.folder / "corpus" / "index.json").read_text())["speakers"]
         order = sorted(found.data.speakers("train"), key=lambda name: liveliness(
             known[name]["style"]))
-        for name, speaker in (("calm", order[0]), ("lively", order[-1])):
+        for name, speaker in (("calm", order[len(order) // 20]), ("lively", order[-1])):
             shutil.copyfile(found.style(speaker, "zs_mstm1"), self.folder / f"{name}.style")
             print(f"{self.folder / name}.style: of {speaker}")
 
@@ -138,16 +159,23 @@ class Recipe:
             raise ConvertError(f"{recording}: {pose.shape} poses that do not move")
         print(f"{recording}: {len(pose)} frames of motion")
 
-    def _step(self, made, *arguments, module="converters.training"):
-        """Runs a command, unless what it makes is there and may be kept."""
+    def _step(self, made, *arguments, module="converters.training", prefix=None):
+        """Runs a command, unless what it makes is there and may be kept.  With a `prefix` its lines
+        begin so, to be told from those of others that run at the same time."""
         if made and self.options.resume and (self.folder / made).exists():
             return
         command = [sys.executable, "-m", module, *map(str, arguments)]
         print("==> " + shlex.join(["python3", *command[1:]]), file=sys.stderr, flush=True)
-        if subprocess.run(command, cwd=ROOT, check=False).returncode != 0:
+        pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.STDOUT} if prefix else {}
+        with subprocess.Popen(command, cwd=ROOT, text=True, **pipes) as running:
+            for line in running.stdout or ():
+                print(prefix + line, end="", file=sys.stderr, flush=True)
+        if running.returncode != 0:
             raise ConvertError(f"python3 -m {module} {arguments[0]}: failed, see above")
 
 
 def liveliness(style):
-    """How much a speaker of the corpus moves: size of strokes times how often there is one."""
-    return style["amplitude"] ** 2 * (0.3 + style["frequency"]) * (2 - abs(style["arms"]))
+    """How much a speaker of the corpus moves: size and speed of strokes times how often there is
+    one."""
+    return (style["amplitude"] ** 2 * style["velocity"] * (0.3 + style["frequency"])
+            * (2 - abs(style["arms"])))

@@ -1,16 +1,19 @@
 """Training from the command line: every kind learns, resumes bit by bit and is exported; what cannot
 be is one line."""
 
+import argparse
 import csv
 import json
 import pathlib
 import subprocess
+import time
 
 import numpy as np
 import pytest
 import training_data
 
 from converters import weights_file
+from converters.errors import ConvertError
 from converters.training import tasks
 from converters.training.__main__ import main
 
@@ -101,6 +104,71 @@ def test_the_probe_asks_a_run_for_its_style(train, data, kind):
     _, folder, _ = train(training_data.configuration(kind, steps=2, dev_every=2), "run")
     found = probe.evidence(folder, data, steps=40)
     assert 0 < found["error"] < 10 and found["segments"] == 18
+
+
+def test_strange_voices_are_in_style_clips_while_training_and_nowhere_else(data):
+    from converters.training import configuration
+    task_class = tasks.of("zs_mstm1")
+    opened = task_class.open_data(data)
+
+    def batches(share, training=True):
+        made = training_data.configuration("zs_mstm1", options={"style_segments": 2,
+                                                                "strange_voices": share})
+        task = task_class(configuration.check(made, "made"), opened, torch.device("cpu"))
+        task.module.train(training)
+        return task.batch(task.items[:8], np.random.default_rng(3))
+
+    (segments, clips), (same, strange) = batches(0.0), batches(1.0)
+    for name in segments:
+        assert torch.equal(segments[name], same[name])
+    assert torch.equal(clips["pose"], strange["pose"])
+    for name in ("speech", "text"):  # the clips of the batch in another order
+        rows, found = ({tuple(row) for row in x[name].flatten(0, 1).flatten(1).tolist()}
+                       for x in (clips, strange))
+        assert found == rows and not torch.equal(clips[name], strange[name])
+    (_, clips), (_, strange) = batches(0.0, False), batches(1.0, False)
+    assert all(torch.equal(clips[name], strange[name]) for name in clips)
+
+
+def test_evidence_goes_through_a_sample_of_the_seen_styles(data):
+    from converters.training.data.dataset import Dataset
+    from converters.training.evidence import transfer
+
+    class Speakers:
+        """Eight seen speakers with an utterance each in split test."""
+        def speakers(self, _split):
+            return [f"s{n}" for n in range(8)]
+
+        def select(self, _split):
+            return [Dataset.open(data).utterances[0]] * 20
+
+    found = list(transfer._pairs(Speakers(), "seen", 2, 3))
+    assert [speaker for _, _, speaker in found] == ["s0", "s0", "s2", "s2", "s5", "s5"]
+    assert len(list(transfer._pairs(Speakers(), "seen", 1, None))) == 8
+
+
+def test_the_recipe_trains_at_once_what_needs_nothing_of_each_other(tmp_path, monkeypatch):
+    from converters.training import recipe
+    log = []
+
+    def step(_self, made, *arguments, **_):
+        name = made.split("/")[0]
+        log.append(f"{name} begins")
+        time.sleep(0.05 if name in ("slow", "first") else 0)
+        if name == "broken":
+            raise ConvertError("broken")
+        log.append(f"{name} ends")
+
+    monkeypatch.setattr(recipe.Recipe, "_step", step)
+    made = recipe.Recipe(argparse.Namespace(output=tmp_path, models=None, smoke=True, seed=1,
+                                            resume=False, jobs=2))
+    made.train([("slow", "c", 1, {}), ("first", "c", 1, {}), ("second", "c", 1, {"x": "first"})],
+               tmp_path)
+    assert log.index("first begins") < log.index("slow ends")
+    assert log.index("first ends") < log.index("second begins")
+    with pytest.raises(ConvertError, match="broken"):
+        made.train([("broken", "c", 1, {}), ("after", "c", 1, {"x": "broken"})], tmp_path)
+    assert "after begins" not in log
 
 
 def test_statistics_travel_with_the_weights(train, data):

@@ -8,16 +8,21 @@ from . import recordings
 
 
 def add(commands):
+    plan = recordings.Plan()
     parser = commands.add_parser("corpus", help="make the synthetic corpus: speech by espeak-ng, "
                                                 "motion by a parametric gesturer")
     parser.add_argument("-o", "--output", required=True, metavar="CORPUS/")
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--hours", type=float, default=2.4, help="of speech, about; default 2.4")
-    parser.add_argument("--speakers", type=int, default=40, help="seen in training; default 40")
-    parser.add_argument("--unseen", type=int, default=8, help="other speakers, voices and styles "
-                                                              "for evaluations; default 8")
-    parser.add_argument("--texts", type=int, default=12000,
-                        help="sentences of texts.tsv, for BERT and the classifier; default 12000")
+    parser.add_argument("--seed", type=int, default=plan.seed)
+    parser.add_argument("--hours", type=float, default=plan.hours,
+                        help="of speech, about; default %(default)s")
+    parser.add_argument("--speakers", type=int, default=plan.speakers,
+                        help="seen in training; default %(default)s")
+    parser.add_argument("--unseen", type=int, default=plan.unseen,
+                        help="other speakers, voices and styles for evaluations; "
+                             "default %(default)s")
+    parser.add_argument("--texts", type=int, default=plan.texts,
+                        help="sentences of texts.tsv, for BERT and the classifier; "
+                             "default %(default)s")
     parser.add_argument("--jobs", type=int, default=1, help="processes; default 1")
     parser.add_argument("--infer-cli", default=engine.DEFAULT, metavar="PROGRAM")
     parser.set_defaults(run=_run)

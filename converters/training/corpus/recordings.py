@@ -16,7 +16,7 @@ import numpy as np
 from .. import engine
 from . import gesture, prosody, speech, style, texts
 
-_SECONDS = 15.0  # an utterance of Plan.words lasts about so long
+_SECONDS = 16.8  # an utterance of Plan.words lasts about so long
 _DEV, _TEST = 0.08, 0.12  # shares of a seen speaker's utterances
 
 
@@ -24,9 +24,9 @@ _DEV, _TEST = 0.08, 0.12  # shares of a seen speaker's utterances
 class Plan:
     """What is to be made; the same plan makes the same corpus."""
     seed: int = 1
-    hours: float = 2.4
-    speakers: int = 40
-    unseen: int = 8
+    hours: float = 8.4
+    speakers: int = 240
+    unseen: int = 16
     texts: int = 12000
     fewest: int = 4  # utterances of a speaker
     words: tuple = (26, 46)  # of an utterance, at least so many

@@ -18,6 +18,9 @@ def add(commands):
     parser.add_argument("--infer-cli", default=engine.DEFAULT, metavar="PROGRAM")
     parser.add_argument("--transfer", action="append", default=[], metavar="NETWORK",
                         help="a ZS-MSTM of the bundle")
+    parser.add_argument("--styles", type=int, default=0,
+                        help="seen styles to transfer to, spread over the list of speakers; "
+                             "0: all (default %(default)s)")
     parser.add_argument("--sources", type=int, default=2,
                         help="speakers who are heard for each seen style (default %(default)s)")
     parser.add_argument("--unseen", type=int, default=8,
@@ -42,8 +45,9 @@ def _run(options):
     for network in options.transfer:
         from . import transfer
         figures["transfer"][network] = {
-            condition: transfer.evidence(found, network, condition, sources)
-            for condition, sources in (("seen", options.sources), ("unseen", options.unseen))}
+            condition: transfer.evidence(found, network, condition, sources, most)
+            for condition, sources, most in (("seen", options.sources, options.styles),
+                                             ("unseen", options.unseen, None))}
     for text in options.face:
         from . import face
         name, weights = _named(text, "--face")

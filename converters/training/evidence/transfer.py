@@ -11,9 +11,9 @@ MEASURES = ("wrist_velocity", "wrist_acceleration", "wrist_jerk", "box_perimeter
 RIVALS = ("model", "mean pose", "copied source", "shuffled audio")
 
 
-def evidence(found, network, condition, sources_of_each):
-    """The figures of one condition, "seen" or "unseen" styles, as a dictionary."""
-    pairs = list(_pairs(found.data, condition, sources_of_each))
+def evidence(found, network, condition, sources_of_each, most=None):
+    """The figures of one condition, "seen" or "unseen" styles, `most` of them, as a dictionary."""
+    pairs = list(_pairs(found.data, condition, sources_of_each, most))
     folder = found.work / f"{network}-{condition}"
     rows = []
     for n, (utterance, other, speaker) in enumerate(pairs):
@@ -38,10 +38,12 @@ def evidence(found, network, condition, sources_of_each):
             "style": _following(rows)}
 
 
-def _pairs(data, condition, sources_of_each):
+def _pairs(data, condition, sources_of_each, most):
     """(an utterance of the test split, another one of another text, target speaker)"""
     tests = data.select("test")
     targets = data.speakers("train" if condition == "seen" else "unseen")
+    count = min(most or len(targets), len(targets))
+    targets = [targets[n * len(targets) // count] for n in range(count)]
     for n, speaker in enumerate(targets):
         for k in range(sources_of_each):
             others = [u for u in tests if u.speaker != speaker]

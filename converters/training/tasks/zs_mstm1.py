@@ -1,5 +1,6 @@
 """ZS-MSTM 1.0: reconstruction against a discriminator of style (thesis 6.5.4 and 6.6)."""
 
+import numpy as np
 import torch
 
 from ... import networks
@@ -23,6 +24,9 @@ class Task(BaseTask):
         # "other": the style clip is of other utterances of the speaker; "same": the segment itself.
         "style_clip": "other",
         "style_segments": 1,
+        # Share of the style clips that are heard with the speech and words of any speaker, so that
+        # a style is read from the motion and not looked up by the voice.
+        "strange_voices": 0.0,
         "velocity": 0.0,        # weight of losses.velocity, beside the thesis' losses
         "behaviour": 0.0,       # of losses.behaviour
         "fader_step": 0.01,     # lambda's growth a step, and its end; 0: no fader loss
@@ -102,9 +106,18 @@ class Task(BaseTask):
         if self.module.training:
             items = [(u, self._moved(u, first, rng)) for u, first in items]
         clips = [clip for item in items for clip in self._clips(*item, rng)]
+        found = self._take(clips, self.core["frames"])
+        if self.module.training and self.o["strange_voices"]:
+            found |= self._strangers(found, rng)
         return self._take(items, self.window), {
-            name: x.reshape(len(items), -1, *x.shape[1:])
-            for name, x in self._take(clips, self.core["frames"]).items()}
+            name: x.reshape(len(items), -1, *x.shape[1:]) for name, x in found.items()}
+
+    def _strangers(self, clips, rng):
+        """Speech and text of `clips`, a share of which are those of other clips of the batch."""
+        count = len(clips["pose"])
+        own = rng.random(count) >= self.o["strange_voices"]
+        source = torch.from_numpy(np.where(own, np.arange(count), rng.permutation(count)))
+        return {name: clips[name][source.to(self.device)] for name in ("speech", "text")}
 
     def _moved(self, utterance, first, rng):
         half = self.window // 2
