@@ -28,8 +28,8 @@ class Plan;
 class ThreadPool;
 
 inline constexpr int kMaxThreads = 64;
-/// FLOPs of a run that take as long as it takes to wake another thread, some 100 us.
-inline constexpr double kLeastSharedFlops = 2e7;
+/// FLOPs of a run that take about as long as waking another thread can, 0.4 ms.
+inline constexpr double kLeastSharedFlops = 1e8;
 
 struct SessionOptions {
   int threads = 1;                     ///< 1 to 64, the caller's among them
