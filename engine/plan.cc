@@ -113,9 +113,9 @@ Result<std::shared_ptr<const Plan>> Plan::Make(Graph graph, WeightCache& weights
     step.node = std::move(node);
     if (NeedsPacking(step.node)) step.packed = *next++;
     step.cost = CostOf(step.node, plan->values_);
-    plan->worker_bytes_ = std::max<std::uint64_t>(
-        plan->worker_bytes_,
-        Aligned(WorkerScratch(step.node, plan->values_, *plan->kernels_) * sizeof(float)));
+    plan->part_bytes_ = std::max<std::uint64_t>(
+        plan->part_bytes_,
+        Aligned(PartScratch(step.node, plan->values_, *plan->kernels_) * sizeof(float)));
     plan->steps_.push_back(std::move(step));
   }
   plan->FindLifetimes();
@@ -247,7 +247,7 @@ std::string Plan::ToString() const {
       "%.2f MiB a thread\n",
       steps_.size(), flops() * 1e-9, static_cast<double>(arena_bytes_) / 1048576.0,
       static_cast<double>(live_bytes_) / 1048576.0, static_cast<double>(sum) / 1048576.0,
-      static_cast<double>(worker_bytes_) / 1048576.0);
+      static_cast<double>(part_bytes_) / 1048576.0);
   return text + line;
 }
 

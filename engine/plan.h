@@ -38,7 +38,7 @@ class Plan {
   struct Step {
     Node node;
     PackedPointer packed;
-    std::uint64_t scratch_offset = 0;  ///< of state that all workers share, in the arena
+    std::uint64_t scratch_offset = 0;  ///< of state that all parts share, in the arena
     OpCost cost;
   };
 
@@ -58,8 +58,8 @@ class Plan {
   std::uint64_t arena_bytes() const { return arena_bytes_; }
   /// What is needed at the step that needs most: no arena can be smaller.
   std::uint64_t live_bytes() const { return live_bytes_; }
-  /// Scratch that each worker needs beside the arena.
-  std::uint64_t worker_bytes() const { return worker_bytes_; }
+  /// Scratch that each part needs beside the arena.
+  std::uint64_t part_bytes() const { return part_bytes_; }
   /// Of one run.
   double flops() const;
 
@@ -79,7 +79,7 @@ class Plan {
   std::vector<Storage> storage_;  // by value id; meaningful for roots
   std::vector<NamedValue> inputs_, outputs_;
   std::vector<std::shared_ptr<AlignedBuffer>> owned_;
-  std::uint64_t arena_bytes_ = 0, live_bytes_ = 0, worker_bytes_ = 0;
+  std::uint64_t arena_bytes_ = 0, live_bytes_ = 0, part_bytes_ = 0;
 };
 
 }  // namespace gestus

@@ -20,9 +20,9 @@ struct Session::Impl {
   Ref RefOf(const Plan& plan, int id) const;
   void BindOps(const Plan& plan);
   template <class Runner>
-  void Walk(const Plan& plan, Worker worker, Runner run_op) noexcept;
-  void RunOp(std::size_t op, const Worker& worker) const noexcept;
-  void RunTimed(const Plan& plan, std::size_t op, const Worker& worker) noexcept;
+  void Walk(const Plan& plan, Runner run_op) const noexcept;
+  void RunOp(std::size_t op, std::int32_t step, Crew& crew) const noexcept;
+  void RunTimed(const Plan& plan, std::size_t op, std::int32_t step, Crew& crew) noexcept;
 };
 
 std::byte* Session::Impl::AddressOf(const Plan& plan, int id) const {
@@ -62,38 +62,41 @@ void Session::Impl::BindOps(const Plan& plan) {
     b.out = RefOf(plan, step.node.output);
     b.packed = step.packed.get();
     b.shared_scratch = reinterpret_cast<float*>(arena.data() + step.scratch_offset);
-    b.worker_scratch = scratch.f32();
-    b.worker_scratch_stride = plan.worker_bytes() / sizeof(float);
+    b.part_scratch = scratch.f32();
+    b.part_scratch_stride = plan.part_bytes() / sizeof(float);
     ops.push_back(Bind(b));
   }
 }
 
 template <class Runner>
-void Session::Impl::Walk(const Plan& plan, Worker worker, Runner run_op) noexcept {
+void Session::Impl::Walk(const Plan& plan, Runner run_op) const noexcept {
   std::size_t next_loop = 0;
   for (std::size_t i = 0; i < ops.size();) {
     const bool loops = next_loop < plan.loops().size() && plan.loops()[next_loop].begin == i;
     const std::size_t end = loops ? plan.loops()[next_loop].end : i + 1;
     const std::int64_t count = loops ? plan.loops()[next_loop].count : 1;
-    for (worker.step = 0; worker.step < count; ++worker.step) {
-      for (std::size_t op = i; op < end; ++op) run_op(op, worker);
+    for (std::int32_t step = 0; step < count; ++step) {
+      for (std::size_t op = i; op < end; ++op) run_op(op, step);
     }
-    worker.step = 0;
     if (loops) ++next_loop;
     i = end;
   }
 }
 
-void Session::Impl::RunOp(std::size_t op, const Worker& worker) const noexcept {
-  ops[op]->Run(worker);
-  worker.Meet();
+void Session::Impl::RunOp(std::size_t op, std::int32_t step, Crew& crew) const noexcept {
+  const BoundOp& bound = *ops[op];
+  const std::size_t phases = bound.phases();
+  for (std::size_t phase = 0; phase < phases; ++phase) {
+    crew.Phase([&](int index, int count) { bound.Run({index, count, step, phase}); });
+  }
 }
 
-void Session::Impl::RunTimed(const Plan& plan, std::size_t op, const Worker& worker) noexcept {
+void Session::Impl::RunTimed(const Plan& plan, std::size_t op, std::int32_t step,
+                             Crew& crew) noexcept {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point begin = Clock::now();
-  RunOp(op, worker);
-  if (worker.index != 0) return;
+  RunOp(op, step, crew);
+  if (crew.thread() != 0) return;
   OpProfile& p = profile[op];
   p.seconds += std::chrono::duration<double>(Clock::now() - begin).count();
   p.flops += plan.steps()[op].cost.flops;
@@ -116,11 +119,11 @@ Result<std::unique_ptr<Session>> Session::Create(std::shared_ptr<const Plan> pla
   const bool alone = p.flops() < options.least_shared_flops;
   const auto threads = static_cast<std::size_t>(alone ? 1 : options.threads);
   impl.arena = AlignedBuffer(p.arena_bytes());
-  impl.scratch = AlignedBuffer(p.worker_bytes() * threads);
+  impl.scratch = AlignedBuffer(p.part_bytes() * threads);
   if (impl.arena.data() == nullptr || impl.scratch.data() == nullptr)
     return Status(Code::kResourceExhausted,
                   "session: no memory for " +
-                      std::to_string(p.arena_bytes() + p.worker_bytes() * threads) + " bytes");
+                      std::to_string(p.arena_bytes() + p.part_bytes() * threads) + " bytes");
   if (options.threads > 1 && (!alone || options.pool != nullptr)) {
     auto pool =
         options.pool != nullptr ? options.pool : std::make_shared<ThreadPool>(options.threads);
@@ -167,18 +170,19 @@ ValueView Session::Output(std::string_view name) const {
 int Session::threads() const { return impl_->pool != nullptr ? impl_->pool->threads() : 1; }
 
 void Session::Run() noexcept {
-  const auto task = [](void* self, Worker worker) {
+  const auto task = [](void* self, Crew crew) {
     const auto& session = *static_cast<Session*>(self);
     const Plan& plan = *session.plan_;
     Impl& impl = *session.impl_;
     const FlushDenormals flush;
     if (impl.profile.empty())
-      impl.Walk(plan, worker, [&](std::size_t op, const Worker& w) { impl.RunOp(op, w); });
+      impl.Walk(plan, [&](std::size_t op, std::int32_t step) { impl.RunOp(op, step, crew); });
     else
-      impl.Walk(plan, worker, [&](std::size_t op, const Worker& w) { impl.RunTimed(plan, op, w); });
+      impl.Walk(plan,
+                [&](std::size_t op, std::int32_t step) { impl.RunTimed(plan, op, step, crew); });
   };
   if (impl_->pool == nullptr)
-    task(this, Worker{});
+    task(this, Crew{});
   else
     impl_->pool->Run(task, this);
 }

@@ -1,5 +1,5 @@
 // Multi-head attention: heads and blocks of query rows are independent work items.  The blocks do
-// not depend on the number of workers, so neither do the results.
+// not depend on the number of threads, so neither do the results.
 #include "engine/ops/bind.h"
 
 namespace gestus {
@@ -26,24 +26,24 @@ class AttentionOp final : public BoundOp {
         scale_(b.node->scale),
         causal_(b.node->causal),
         by_step_(b.node->by_step),
-        scratch_(b.worker_scratch),
-        scratch_stride_(b.worker_scratch_stride) {}
+        scratch_(b.part_scratch),
+        scratch_stride_(b.part_scratch_stride) {}
 
-  void Run(const Worker& worker) const noexcept override {
+  void Run(const Part& part) const noexcept override {
     const std::size_t blocks = (q_.rows + kQueryBlock - 1) / kQueryBlock;
-    const Worker::Range items = worker.Part(q_.batch * heads_ * blocks);
+    const Part::Range items = part.Of(q_.batch * heads_ * blocks);
     for (std::size_t i = items.begin; i < items.end; ++i) {
-      RunItem(i / (heads_ * blocks), i / blocks % heads_, i % blocks * kQueryBlock, worker);
+      RunItem(i / (heads_ * blocks), i / blocks % heads_, i % blocks * kQueryBlock, part);
     }
   }
 
  private:
-  void RunItem(std::size_t batch, std::size_t head, std::size_t first, const Worker& worker) const {
+  void RunItem(std::size_t batch, std::size_t head, std::size_t first, const Part& part) const {
     kernels::AttentionArgs args;
     args.head_dim = q_.cols / heads_;
     args.value_dim = v_.cols / heads_;
     args.rows = q_.rows - first < kQueryBlock ? q_.rows - first : kQueryBlock;
-    args.keys = by_step_ ? static_cast<std::size_t>(worker.step) + 1 : k_.rows;
+    args.keys = by_step_ ? static_cast<std::size_t>(part.step) + 1 : k_.rows;
     args.q = q_.at(batch, first) + head * args.head_dim;
     args.q_stride = q_.row_stride;
     args.k = k_.at(batch, 0) + head * args.head_dim;
@@ -56,7 +56,7 @@ class AttentionOp final : public BoundOp {
     args.scale = scale_;
     args.causal = causal_;
     args.first_row = first;
-    args.scratch = scratch_ + static_cast<std::size_t>(worker.index) * scratch_stride_;
+    args.scratch = scratch_ + static_cast<std::size_t>(part.index) * scratch_stride_;
     attention_(args);
   }
 

@@ -16,7 +16,7 @@ double Elements(int id, const std::vector<ValueInfo>& values) {
 
 bool NeedsPacking(const Node& node) { return node.op == Op::kLinear || node.op == Op::kLstm; }
 
-std::size_t WorkerScratch(const Node& node, const std::vector<ValueInfo>& values,
+std::size_t PartScratch(const Node& node, const std::vector<ValueInfo>& values,
                           const kernels::KernelTable& kernels) {
   if (node.op == Op::kAttention) return AttentionScratch(node, values, kernels);
   const kernels::ProductKernels* products = ProductsOf(kernels, node.weight.dtype);

@@ -15,7 +15,7 @@ std::unique_ptr<BoundOp> BindRowwise(const Binding& b);  ///< each output row fr
 std::unique_ptr<BoundOp> BindMove(const Binding& b);     ///< rows put in other places
 std::unique_ptr<BoundOp> BindPick(const Binding& b);
 
-/// Floats of scratch that one worker needs for an attention node.
+/// Floats of scratch that one part needs for an attention node.
 std::size_t AttentionScratch(const Node& node, const std::vector<ValueInfo>& values,
                              const kernels::KernelTable& kernels);
 

@@ -9,8 +9,8 @@ class LinearOp final : public BoundOp {
  public:
   explicit LinearOp(const Binding& b)
       : block_(b.kernels->gemm_block_n),
-        scratch_(b.worker_scratch),
-        scratch_stride_(b.worker_scratch_stride) {
+        scratch_(b.part_scratch),
+        scratch_stride_(b.part_scratch_stride) {
     const kernels::ProductKernels* products = ProductsOf(*b.kernels, b.node->weight.dtype);
     gemm_ = products != nullptr ? products->gemm : b.kernels->f32_gemm;
     gemv_ = products != nullptr ? products->gemv : b.kernels->f32_gemv;
@@ -40,33 +40,33 @@ class LinearOp final : public BoundOp {
     out_batch_stride_ = b.out.batch_stride;
   }
 
-  void Run(const Worker& worker) const noexcept override {
+  void Run(const Part& part) const noexcept override {
     for (std::size_t i = 0; i < batch_; ++i) {
       const auto b = static_cast<std::ptrdiff_t>(i);
       kernels::GemmArgs args = args_;
-      args.scratch = scratch_ + static_cast<std::size_t>(worker.index) * scratch_stride_;
+      args.scratch = scratch_ + static_cast<std::size_t>(part.index) * scratch_stride_;
       args.a += b * a_batch_stride_;
       args.out += b * out_batch_stride_;
       if (args.epilogue.residual != nullptr) args.epilogue.residual += b * residual_batch_stride_;
-      RunOne(args, worker);
+      RunOne(args, part);
     }
   }
 
  private:
-  // Wide outputs are divided by columns, so that each worker streams its own weights; tall and
+  // Wide outputs are divided by columns, so that each part streams its own weights; tall and
   // narrow ones by rows.
-  void RunOne(kernels::GemmArgs args, const Worker& worker) const {
-    const auto count = static_cast<std::size_t>(worker.count);
+  void RunOne(kernels::GemmArgs args, const Part& part) const {
+    const auto count = static_cast<std::size_t>(part.count);
     const std::size_t panels = (args.n + block_ - 1) / block_;
     if (panels >= 2 * count || args.m < 8 * count) {
-      const Worker::Range cols = worker.Part(args.n, block_);
+      const Part::Range cols = part.Of(args.n, block_);
       if (cols.empty()) return;
       args.n_begin = cols.begin;
       args.n_end = cols.end;
       (args.m == 1 ? gemv_ : gemm_)(args);
       return;
     }
-    const Worker::Range rows = worker.Part(args.m);
+    const Part::Range rows = part.Of(args.m);
     if (rows.empty()) return;
     const auto first = static_cast<std::ptrdiff_t>(rows.begin);
     args.m = rows.end - rows.begin;

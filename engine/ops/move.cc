@@ -1,4 +1,4 @@
-// Ops that put rows in other places.  They move little, so worker 0 does them alone.
+// Ops that put rows in other places.  They move little, so part 0 does them alone.
 #include <algorithm>
 #include <cstring>
 
@@ -12,10 +12,10 @@ class MoveOp final : public BoundOp {
   explicit MoveOp(const Binding& b)
       : kernels_(*b.kernels), node_(*b.node), in_(b.in), out_(b.out) {}
 
-  void Run(const Worker& worker) const noexcept override {
-    if (worker.index != 0) return;
+  void Run(const Part& part) const noexcept override {
+    if (part.index != 0) return;
     const Ref& x = in_[0];
-    const auto step = static_cast<std::size_t>(worker.step);
+    const auto step = static_cast<std::size_t>(part.step);
     switch (node_.op) {
       case Op::kConcat:
         return Concat();

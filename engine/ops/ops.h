@@ -29,12 +29,13 @@ struct Ref {
   }
 };
 
-/// An op with everything resolved.  Run computes this worker's part and must not return before its
-/// own reads of shared scratch are over; the session lets workers meet between ops.
+/// An op with everything resolved.  Its phases follow one another, the parts of each are computed at
+/// the same time, in any order and on any thread.
 class BoundOp {
  public:
   virtual ~BoundOp() = default;
-  virtual void Run(const Worker& worker) const noexcept = 0;
+  virtual std::size_t phases() const { return 1; }
+  virtual void Run(const Part& part) const noexcept = 0;
 };
 
 struct Binding {
@@ -44,15 +45,15 @@ struct Binding {
   Ref out;
   const void* packed = nullptr;
   float* shared_scratch = nullptr;
-  float* worker_scratch = nullptr;        ///< of worker 0
-  std::size_t worker_scratch_stride = 0;  ///< floats between workers
+  float* part_scratch = nullptr;        ///< of part 0
+  std::size_t part_scratch_stride = 0;  ///< floats between parts
 };
 
 bool NeedsPacking(const Node& node);
-/// Floats that one worker needs while the op runs.
-std::size_t WorkerScratch(const Node& node, const std::vector<ValueInfo>& values,
+/// Floats that one part needs while the op runs.
+std::size_t PartScratch(const Node& node, const std::vector<ValueInfo>& values,
                           const kernels::KernelTable& kernels);
-/// Floats that all workers share while the op runs.
+/// Floats that all parts share while the op runs.
 std::size_t SharedScratch(const Node& node, const std::vector<ValueInfo>& values);
 OpCost CostOf(const Node& node, const std::vector<ValueInfo>& values);
 std::unique_ptr<BoundOp> Bind(const Binding& binding);

@@ -1,5 +1,5 @@
 // Choosing a token: the largest logit, or a draw from the softmax.  Rows are short and a draw is
-// sequential, so worker 0 does it alone.
+// sequential, so part 0 does it alone.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -20,8 +20,8 @@ class PickOp final : public BoundOp {
         ordered_(b.shared_scratch),
         out_(reinterpret_cast<std::int32_t*>(b.out.f32)) {}
 
-  void Run(const Worker& worker) const noexcept override {
-    if (worker.index != 0) return;
+  void Run(const Part& part) const noexcept override {
+    if (part.index != 0) return;
     *out_ = !Comparable()      ? -1
             : controls_[0] > 0 ? static_cast<std::int32_t>(Draw())
                                : static_cast<std::int32_t>(Largest());

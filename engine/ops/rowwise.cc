@@ -1,4 +1,4 @@
-// Ops whose output row depends on the input row alone; workers divide the rows.
+// Ops whose output row depends on the input row alone, so parts are of rows.
 #include "engine/ops/bind.h"
 
 namespace gestus {
@@ -12,13 +12,13 @@ class RowwiseOp final : public BoundOp {
     repeat_other_ = other_.rows * other_.batch == 1;
   }
 
-  void Run(const Worker& worker) const noexcept override {
-    const Worker::Range part = worker.Part(x_.batch * x_.rows);
+  void Run(const Part& part) const noexcept override {
+    const Part::Range range = part.Of(x_.batch * x_.rows);
     // Rows of one matrix at a time: matrices of a batch need not be evenly spaced.
-    for (std::size_t at = part.begin; at < part.end;) {
+    for (std::size_t at = range.begin; at < range.end;) {
       const std::size_t b = at / x_.rows, row = at % x_.rows;
       const std::size_t left = x_.rows - row;
-      const std::size_t rows = part.end - at < left ? part.end - at : left;
+      const std::size_t rows = range.end - at < left ? range.end - at : left;
       RunRows(b, row, rows);
       at += rows;
     }

@@ -387,13 +387,13 @@ TEST(ForkTest, AChildMayMakeAndDestroySessions) {
   EXPECT_TRUE(SameBytes(RunOn(*inherited, 1), want));
 }
 
-TEST(WorkerTest, PartsCoverEverythingOnce) {
+TEST(PartTest, PartsCoverEverythingOnce) {
   for (const std::size_t n : {0u, 1u, 7u, 64u, 1000u}) {
     for (const std::size_t grain : {1u, 8u, 48u}) {
       for (int count = 1; count <= 9; ++count) {
         std::size_t at = 0;
         for (int i = 0; i < count; ++i) {
-          const Worker::Range part = Worker{i, count, nullptr, 0}.Part(n, grain);
+          const Part::Range part = Part{i, count}.Of(n, grain);
           ASSERT_EQ(part.begin, at);
           ASSERT_TRUE(part.begin % grain == 0 || part.empty());
           ASSERT_GE(part.end, part.begin);
@@ -405,26 +405,52 @@ TEST(WorkerTest, PartsCoverEverythingOnce) {
   }
 }
 
-TEST(ThreadPoolTest, EveryWorkerRunsOnceInEachOfManyRuns) {
-  ThreadPool pool(4);
+/// What became of the parts of some phases.
+struct Tally {
+  static constexpr int kParts = 4, kPhases = 50;
+  std::atomic<int> runs[kPhases][kParts] = {};
+  std::atomic<int> done{0};
+  std::atomic<bool> early{false}, over{false};
+  int thread_that_stays_away = -1;
+
+  static void Go(void* context, Crew crew) {
+    auto& tally = *static_cast<Tally*>(context);
+    while (crew.thread() == tally.thread_that_stays_away && !tally.over) std::this_thread::yield();
+    for (int phase = 0; phase < kPhases; ++phase) {
+      crew.Phase([&](int index, int count) {
+        if (count != kParts || tally.done < phase * kParts) tally.early = true;
+        ++tally.runs[phase][index];
+        ++tally.done;
+      });
+    }
+    tally.over = true;
+  }
+  void ExpectEachOnce() const {
+    EXPECT_FALSE(early) << "a part began before the phase before it was done";
+    for (const auto& phase : runs) {
+      for (const auto& part : phase) ASSERT_EQ(part.load(), 1);
+    }
+  }
+};
+
+TEST(ThreadPoolTest, EveryPartIsDoneOnceInEachOfManyRuns) {
+  ThreadPool pool(Tally::kParts);
   ASSERT_TRUE(pool.complete());
-  struct Tally {
-    std::atomic<int> calls[4] = {};
-    std::atomic<int> met{0};
-  } tally;
-  for (int run = 1; run <= 500; ++run) {
-    pool.Run(
-        [](void* context, Worker worker) {
-          auto& t = *static_cast<Tally*>(context);
-          ++t.calls[worker.index];
-          ++t.met;
-          worker.Meet();
-          // Nobody leaves before all have come.
-          if (t.met.load() % 4 != 0) t.calls[worker.index] += 1000000;
-          worker.Meet();
-        },
-        &tally);
-    for (const auto& calls : tally.calls) ASSERT_EQ(calls.load(), run);
+  for (int run = 0; run < 200; ++run) {
+    Tally tally;
+    pool.Run(Tally::Go, &tally);
+    tally.ExpectEachOnce();
+  }
+}
+
+TEST(ThreadPoolTest, NobodyWaitsForAWorkerThatStaysAway) {
+  ThreadPool pool(Tally::kParts);
+  ASSERT_TRUE(pool.complete());
+  for (int run = 0; run < 20; ++run) {
+    Tally tally;
+    tally.thread_that_stays_away = 1 + run % 3;
+    pool.Run(Tally::Go, &tally);
+    tally.ExpectEachOnce();
   }
 }
 
