@@ -3,6 +3,8 @@
 #include "engine/session.h"
 
 #include <gtest/gtest.h>
+#include <pthread.h>
+#include <sched.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -441,6 +443,37 @@ TEST(ThreadPoolTest, EveryPartIsDoneOnceInEachOfManyRuns) {
     pool.Run(Tally::Go, &tally);
     tally.ExpectEachOnce();
   }
+}
+
+TEST(ThreadPoolTest, WorkersStayOnTheCallersProcessors) {
+  cpu_set_t before, allowed;
+  ASSERT_EQ(pthread_getaffinity_np(pthread_self(), sizeof before, &before), 0);
+  CPU_ZERO(&allowed);
+  CPU_SET(sched_getcpu(), &allowed);  // one, which all of them share
+  ASSERT_EQ(pthread_setaffinity_np(pthread_self(), sizeof allowed, &allowed), 0);
+  ThreadPool pool(Tally::kParts);
+  for (int run = 0; run < 20; ++run) {
+    Tally tally;
+    pool.Run(Tally::Go, &tally);
+    tally.ExpectEachOnce();
+  }
+  // Now there are others to go to, and no more than the caller has.
+  ASSERT_EQ(pthread_setaffinity_np(pthread_self(), sizeof before, &before), 0);
+  struct Where {
+    cpu_set_t allowed;
+    std::atomic<bool> astray{false};
+  } where{before};
+  for (int run = 0; run < 200; ++run) {
+    pool.Run(
+        [](void* context, Crew crew) {
+          auto& w = *static_cast<Where*>(context);
+          crew.Phase([&](int, int) {
+            if (!CPU_ISSET(sched_getcpu(), &w.allowed)) w.astray = true;
+          });
+        },
+        &where);
+  }
+  EXPECT_FALSE(where.astray);
 }
 
 TEST(ThreadPoolTest, NobodyWaitsForAWorkerThatStaysAway) {
