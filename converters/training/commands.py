@@ -20,6 +20,8 @@ def add(commands):
     train.add_argument("--minutes", type=float, help="stop after so many, with what is best then")
     train.add_argument("--device", default="auto", help="cpu, cuda, or auto (default)")
     train.add_argument("--seed", type=int, help="instead of the configuration's")
+    train.add_argument("--set", action="append", default=[], metavar="FIELD=JSON", dest="changes",
+                       help="instead of what the configuration says, as in options.dropout=0.2")
     train.add_argument("--threads", type=int, default=1, help="of a CPU (default %(default)s)")
     train.add_argument("--pretrained", action="append", default=[], metavar="NAME=RUN",
                        help="Model 1: ae_speech and ae_face, trained before")
@@ -28,10 +30,12 @@ def add(commands):
 
 def _train(options):
     import torch
+    from threadpoolctl import threadpool_limits
     from . import configuration, tasks
     from .trainer import Trainer
     torch.set_num_threads(options.threads)
-    found = configuration.read(options.configuration)
+    threadpool_limits(options.threads)  # OpenBLAS has threads of its own, of which PyTorch knows not
+    found = configuration.read(options.configuration, options.changes)
     if options.seed is not None:
         found["seed"] = options.seed
     if options.minutes is not None and not options.minutes > 0:

@@ -30,10 +30,26 @@ _LENGTHS = ("epochs", "steps")
 _PROVENANCE = ("trained_on", "licence", "recipe")
 
 
-def read(path):
-    """The checked configuration in `path`, with defaults."""
+def read(path, changes=()):
+    """The checked configuration in `path`, with defaults.  `changes`: "FIELD=JSON" of fields that are
+    set otherwise, those inside objects as "options.dropout"."""
     path = pathlib.Path(path)
-    return check(strict_json.parse(path.read_bytes(), str(path)), str(path))
+    found = strict_json.parse(path.read_bytes(), str(path))
+    for text in changes:
+        _change(found, text)
+    return check(found, str(path))
+
+
+def _change(found, text):
+    field, equals, value = text.partition("=")
+    *outer, name = field.split(".")
+    if not equals or not name:
+        raise ConvertError(f"--set: {text}, expected FIELD=JSON")
+    for part in outer:
+        found = found.setdefault(part, {}) if isinstance(found, dict) else None
+    if not isinstance(found, dict):
+        raise ConvertError(f"--set: {text}: {'.'.join(outer)} is no object")
+    found[name] = strict_json.parse(value.encode(), f"--set: {field}")
 
 
 def check(given, where):

@@ -171,6 +171,29 @@ def test_the_recipe_trains_at_once_what_needs_nothing_of_each_other(tmp_path, mo
     assert "after begins" not in log
 
 
+@pytest.mark.parametrize("changed", ["options.no_speech", "options.no_text", "options.no_attention",
+                                     "network.config.conv_decoder"])
+def test_parts_of_model2_are_taken_away(train, changed):
+    """The ablations of 5.6.3, each by one field set otherwise: the loss is another one, the field is
+    in the checkpoint, and weights that A would attend by stay zero."""
+    value = "false" if "conv" in changed else "true"
+    whole = train(training_data.configuration("model2"), "whole")[1]
+    code, without, said = train(training_data.configuration("model2"), "without", "--set",
+                                f"{changed}={value}")
+    assert code == 0, said
+    losses = [curves(folder)[-1]["dev_loss"] for folder in (whole, without)]
+    assert losses[0] != losses[1]
+    found = torch.load(without / "checkpoint.pt")["configuration"]
+    for part in changed.split("."):
+        found = found[part]
+    assert found == json.loads(value)
+    state = torch.load(without / "best.pt")
+    asking = [bool(x.abs().max()) for key, x in state.items()
+              if key.startswith("cross.layer.cross_attn.query")]
+    assert asking == [changed != "options.no_attention"] * 2
+    assert any("conv_decoder" in key for key in state) == ("conv" not in changed)
+
+
 def test_statistics_travel_with_the_weights(train, data):
     from converters.training.data.dataset import Dataset
     _, folder, _ = train(training_data.configuration("zs_mstm1", steps=1), "run")
@@ -230,7 +253,11 @@ def test_faults_of_the_command_line(train, tmp_path, capfd):
     good = training_data.configuration("zs_mstm1")
     for options, message in ((["--device", "cuda:77"], "--device: cuda:77: "),
                              (["--minutes", "-1"], "--minutes: -1.0"),
-                             (["--pretrained", "x"], "expected NAME=RUN")):
+                             (["--pretrained", "x"], "expected NAME=RUN"),
+                             (["--set", "steps"], "--set: steps, expected FIELD=JSON"),
+                             (["--set", "steps.most=1"], "steps.most=1: steps is no object"),
+                             (["--set", "steps=many"], "--set: steps: no JSON"),
+                             (["--set", "steps=0"], "steps: 0, expected a whole number")):
         code, _, said = train(good, "run", *options)
         assert code == 2 and message in said and said.count("\n") == 1, said
     assert main(["train", str(CONFIGS / "zs_mstm1.json"), "--data", str(tmp_path), "-o",

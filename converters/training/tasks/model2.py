@@ -1,5 +1,7 @@
 """Model 2: faces of inter-pausal units by a Transformer (thesis 5.6.2, eq. 5.17)."""
 
+import torch
+
 from .. import faces, losses
 from ..batched import model2
 from ..data import sampling
@@ -13,9 +15,11 @@ class Task(BaseTask):
         # Share of the tokens before a step that is replaced by random levels (faces.corrupted).
         "token_noise": 0.0,
         "spread": 0.0,  # of the target over neighbouring levels, in levels (losses.tokens)
-        # The ablations of 5.6.3: what is taken away of the inputs.
+        # The ablations of 5.6.3: what is taken away of the inputs, or A does not attend, so that
+        # each word gets the mean of all values.  The fourth is the network's `conv_decoder`.
         "no_speech": False,
         "no_text": False,
+        "no_attention": False,
     }
 
     def __init__(self, configuration, data, device):
@@ -25,6 +29,12 @@ class Task(BaseTask):
         words = self.network["config"]["max_words"]
         self.items, self._dev = (sampling.windows(data, data.select(split), words)
                                  for split in ("train", "dev"))
+
+    def initialise(self):
+        if self.o["no_attention"]:
+            asking = self.module.cross.layer.cross_attn.query
+            for parameter in asking.parameters():  # scores of 0 are alike
+                torch.nn.init.zeros_(parameter.requires_grad_(False))
 
     def fields(self, given):
         return {**given, "config": {"d_text": self.data.d_text, **given.get("config", {})}}
