@@ -101,6 +101,8 @@ ThreadPool::ThreadPool(int threads)
     start.release();  // the thread owns it now
     workers_.push_back(thread);
   }
+  // What a thread does once is over before the first run.
+  AwaitValue(started_, [&](std::uint32_t started) { return started == workers_.size(); });
 }
 
 ThreadPool::~ThreadPool() {
@@ -153,6 +155,8 @@ void ThreadPool::KeepOffTheCallersProcessor() const {
 }
 
 void ThreadPool::Work(int index) {
+  started_.fetch_add(1, std::memory_order_acq_rel);
+  started_.notify_all();
   std::uint32_t seen = 0;
   for (;;) {
     epoch_.wait(seen, std::memory_order_acquire);

@@ -120,6 +120,7 @@ class ThreadPool {
   Phases phases_;
   std::atomic<std::uint32_t> epoch_{0};  // of runs
   std::atomic<std::uint32_t> inside_;    // workers in the run, and whether others may still enter
+  std::atomic<std::uint32_t> started_{0};
   std::atomic<bool> stop_{false};
   Task task_ = nullptr;
   void* context_ = nullptr;

@@ -1,6 +1,7 @@
 #!/bin/bash
 # No system call between the two getppid() calls of steady_state with one thread; with two threads
-# only those by which they wait for each other.  Exit 77 (skipped) where tracing is not to be had.
+# only those by which they wait for each other or keep off each other's processor.  Exit 77 (skipped)
+# where tracing is not to be had.
 # Usage: no_syscalls.sh STEADY_STATE WEIGHTS THREADS REPEATS ALLOWED
 set -euo pipefail
 program=$1 weights=$2 threads=$3 repeats=$4 allowed=$5
