@@ -24,7 +24,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 # The minutes are for slow machines: what is faster ends by its configuration's steps.
 MODELS = (
     ("zs_mstm1", "demo_zs_mstm1", 70, {}),
-    ("model2", "demo_model2", 45, {}),
+    ("model2", "demo_model2", 60, {}),
     ("ae_speech", "demo_ae_speech", 4, {}),
     ("ae_face", "demo_ae_face", 4, {}),
     ("model1", "demo_model1", 12, {"ae_speech": "ae_speech", "ae_face": "ae_face"}),

@@ -23,8 +23,8 @@ def _transfer(found):
                     [(name, f"{x['rmse']:.1f}", _number(x["pcc"]), f"{x['per_point']:.1f}")
                      for name, x in found["rivals"].items()])
     dist = _table(("Dist_avg(prediction, target)", "pooled", "mean of pairs",
-                   "pooled, target = exact truth"),
-                  [(name, *(f"{x[key]:.1f} %" for key in ("pooled", "mean", "exact")))
+                   "pooled, target = exact truth", "the gesturer's, pooled"),
+                  [(name, *(f"{x[key]:.1f} %" for key in ("pooled", "mean", "exact", "gesturer")))
                    for name, x in found["dist"].items()])
     timing = _table(("speed of the wrists, correlation with the truth", "PCC"),
                     [(name, f"{x:.2f}") for name, x in found["timing"].items()])

@@ -62,14 +62,16 @@ def _rivals(found, folder):
 
 
 def _dist(found, folder):
-    """Eq. 6.9 of each measure: distances of all pairs added up, then put in proportion; and the mean
-    of the pairs' own percentages."""
-    report = found.evaluate(folder / "model", folder / "truth", "--source",
-                            folder / "copied source", "--target", folder / "target")
-    exact = found.evaluate(folder / "model", folder / "truth", "--source",
-                           folder / "copied source", "--target", folder / "truth")
+    """Eq. 6.9 of each measure: distances of all pairs added up, then put in proportion; the mean of
+    the pairs' own percentages; and what the gesturer has, who knows the style: no two utterances of
+    a speaker move alike."""
+    report, exact, gesturer = (
+        found.evaluate(folder / name, folder / "truth", "--source", folder / "copied source",
+                       "--target", folder / target)
+        for name, target in (("model", "target"), ("model", "truth"), ("truth", "target")))
     return {measure: {"pooled": _pooled(report, measure), "mean": _mean(report, measure),
-                      "exact": _pooled(exact, measure)} for measure in MEASURES}
+                      "exact": _pooled(exact, measure), "gesturer": _pooled(gesturer, measure)}
+            for measure in MEASURES}
 
 
 def _pooled(report, measure):
