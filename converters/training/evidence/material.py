@@ -29,10 +29,12 @@ class Material:
         return at / "speech.wav", at / "words.json"
 
     def clips(self, speaker):
-        """(utterances that the style is made of, those that its behaviour is measured on)."""
+        """(utterances that the style is made of, those that its behaviour is measured on): one alone
+        would say little of how a speaker moves."""
         train = self.data.select("train", speaker)
         if train:
-            return train[:_STYLE_CLIPS], self.data.select("test", speaker)
+            return train[:_STYLE_CLIPS], [*self.data.select("dev", speaker),
+                                          *self.data.select("test", speaker)]
         own = self.data.select("unseen", speaker)
         half = max(1, len(own) // 2)
         return own[:half][:_STYLE_CLIPS], own[half:] or own
