@@ -14,18 +14,19 @@ class Optimiser:
 
     def __init__(self, parameters, fields, schedule, clip=None):
         fields = dict(fields)
-        self.parameters, self.schedule, self.clip = list(parameters), schedule, clip
-        self.inner = _CLASSES[fields.pop("name")](self.parameters, lr=1.0, **fields)
+        self.schedule, self.clip = schedule, clip
+        self.all = _joined([p for p in parameters if p.requires_grad])
+        self.inner = _CLASSES[fields.pop("name")]([self.all], lr=1.0, **fields)
 
     def step(self, loss, step):
         """One step down `loss`, the `step`-th, counted from 1; returns the learning rate."""
         rate = schedules.rate(self.schedule, step)
         for group in self.inner.param_groups:
             group["lr"] = rate
-        self.inner.zero_grad(set_to_none=True)
+        self.all.grad.zero_()
         loss.backward()
         if self.clip:
-            torch.nn.utils.clip_grad_norm_(self.parameters, self.clip)
+            torch.nn.utils.clip_grad_norm_([self.all], self.clip)
         self.inner.step()
         return rate
 
@@ -34,6 +35,19 @@ class Optimiser:
 
     def load(self, state):
         self.inner.load_state_dict(state)
+
+
+def _joined(parameters):
+    """One tensor whose parts the parameters become, and their gradients parts of its gradient: of
+    hundreds of small tensors PyTorch spends more time on each than on what is in it."""
+    whole = torch.cat([p.detach().flatten() for p in parameters])
+    whole.grad = torch.zeros_like(whole)
+    at = 0
+    for p in parameters:
+        part = slice(at, at + p.numel())
+        p.data, p.grad = whole[part].view_as(p), whole.grad[part].view_as(p)
+        at = part.stop
+    return whole
 
 
 def check(fields, where):
