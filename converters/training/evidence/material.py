@@ -7,9 +7,11 @@ import subprocess
 
 import numpy as np
 
+from ... import kinds, weights_file
 from ...errors import ConvertError
 from .. import engine
 from ..corpus import recordings
+from ..data import sampling
 from ..data.dataset import Dataset
 
 _STYLE_CLIPS = 4  # utterances of a speaker that a style is made of
@@ -40,6 +42,18 @@ class Material:
         return own[:half][:_STYLE_CLIPS], own[half:] or own
 
     @functools.lru_cache(maxsize=None)
+    def _network(self, name):
+        for network in weights_file.read(self.weights).networks:
+            if network["name"] == name:
+                return network
+        raise ConvertError(f"{self.weights}: no network {name}")
+
+    def streams(self, network):
+        """The motion that a network of the bundle makes."""
+        kind = kinds.kind_of(self._network(network))
+        return ("pose", "face") if kind == "zs_mstm2" else ("pose",)
+
+    @functools.lru_cache(maxsize=None)
     def style(self, speaker, network):
         """The style file of a speaker, taken by the engine."""
         folder = self.work / "styles" / network
@@ -47,27 +61,38 @@ class Material:
         paths = []
         for n, utterance in enumerate(self.clips(speaker)[0]):
             paths.append(folder / f"{speaker}-{n}.npz")
-            np.savez(paths[-1], **self._clip(utterance))
+            np.savez(paths[-1], **self._clip(utterance, network))
         output = folder / f"{speaker}.style"
         self._run("style", "extract", self.weights, *paths, "--network", network, "-o", output)
         return output
 
-    def _clip(self, utterance):
-        arrays = self.data.load(utterance)
-        return {f"style_{name}": arrays[name] for name in ("speech", "text", "pose")}
+    def _clip(self, utterance, network):
+        arrays, streams = self.data.load(utterance), self.streams(network)
+        clip = {f"style_{name}": arrays[name] for name in ("speech", "text", *streams)}
+        if "face" in streams:
+            frames = self._network(network)["config"]["core"]["frames"]
+            segments = sampling.segments([utterance], frames)
+            clip["style_tags"] = sampling.take_segments(self.data, segments, frames,
+                                                        ("tags",))["tags"]
+        return clip
 
     def motion(self, utterance, speaker, network):
-        """What the engine makes of an utterance in the style of a speaker, with the borders of
-        segments faded as in the demo."""
+        """{"pose", "face"}, or what of these the network makes, of an utterance in the style of a
+        speaker, with the borders of segments faded as in the demo."""
         arrays, _ = engine.arrays_of(self.infer_cli, [
             self.weights, *self.recording(utterance), "--style", self.style(speaker, network),
             "--network", network, "--crossfade", "0.3"])
-        return arrays["pose"]
+        return {name: arrays[name] for name in self.streams(network)}
 
-    def truth(self, utterance, speaker):
+    def recorded(self, utterance, network):
+        """What the utterance's own speaker does."""
+        arrays = self.data.load(utterance)
+        return {name: arrays[name] for name in self.streams(network)}
+
+    def truth(self, utterance, speaker, network):
         """What the gesturer makes of it: the exact truth of the transfer."""
-        return recordings.transfer(self.corpus, f"{utterance.speaker}/{utterance.id}",
-                                   speaker)["pose"]
+        made = recordings.transfer(self.corpus, f"{utterance.speaker}/{utterance.id}", speaker)
+        return {name: made[name] for name in self.streams(network)}
 
     def evaluate(self, predictions, truth, *options):
         """The report of `infer-cli eval` on two folders."""

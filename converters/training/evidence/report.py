@@ -18,10 +18,13 @@ def markdown(figures):
 
 
 def _transfer(found):
-    rivals = _table(("against the truth of the transfer", "RMSE, units", "PCC",
-                     "mean distance of a joint, units"),
-                    [(name, f"{x['rmse']:.1f}", _number(x["pcc"]), f"{x['per_point']:.1f}")
-                     for name, x in found["rivals"].items()])
+    rivals = _rivals(found["rivals"])
+    near = found["nearness"]
+    nearness = _table(("distance of a point, units, to", "mean"), [
+        ("the source's motion", f"{near['source']:.1f}"),
+        ("another utterance of the target speaker", f"{near['target']:.1f}"),
+        ("the truth of the transfer", f"{near['truth']:.1f}"),
+        ("content preservation, eq. 7.5", f"{near['content']:.1f} %")])
     dist = _table(("Dist_avg(prediction, target)", "pooled", "mean of pairs",
                    "pooled, target = exact truth", "the gesturer's, pooled"),
                   [(name, *(f"{x[key]:.1f} %" for key in ("pooled", "mean", "exact", "gesturer")))
@@ -31,7 +34,19 @@ def _transfer(found):
     style = _table(("habit of the target speakers", "PCC of the model", "PCC of the gesturer"),
                    [(name, f"{x['model']:.2f}", f"{x['truth']:.2f}")
                     for name, x in found["style"].items()])
-    return "\n".join((rivals, dist, timing, style))
+    return "\n".join((rivals, nearness, dist, timing, style))
+
+
+def _rivals(rivals):
+    head = ["against the truth of the transfer", "RMSE, units", "PCC",
+            "mean distance of a point, units"]
+    rows = [[name, f"{x['rmse']:.1f}", _number(x["pcc"]), f"{x['per_point']:.1f}"]
+            for name, x in rivals.items()]
+    if "face_rmse" in rivals["model"]:
+        head += ["RMSE of landmarks, units", "PCC"]
+        for row, x in zip(rows, rivals.values()):
+            row += [f"{x['face_rmse']:.2f}", _number(x["face_pcc"])]
+    return _table(head, rows)
 
 
 def _face(found):

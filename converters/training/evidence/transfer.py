@@ -18,24 +18,35 @@ def evidence(found, network, condition, sources_of_each, most=None):
     rows = []
     for n, (utterance, other, speaker) in enumerate(pairs):
         made = {"model": found.motion(utterance, speaker, network),
-                "truth": found.truth(utterance, speaker),
-                "copied source": found.data.load(utterance)["pose"],
+                "truth": found.truth(utterance, speaker, network),
+                "copied source": found.recorded(utterance, network),
                 "shuffled audio": found.motion(other, speaker, network)}
-        style, held_out = (np.concatenate([found.data.load(u)["pose"] for u in utterances])
+        style, held_out = (_joined([found.recorded(u, network) for u in utterances])
                            for utterances in found.clips(speaker))
-        length = min(map(len, made.values()))
-        made = {name: x[:length] for name, x in made.items()}
-        made["mean pose"] = np.tile(style.mean(0, dtype=np.float64).astype(np.float32), (length, 1))
+        made["mean pose"] = {stream: _still(x, utterance.frames) for stream, x in style.items()}
         made["target"] = held_out
-        for name, x in made.items():
-            material.save(folder / name, f"{n:03d}", pose=x)
-        rows.append({"speaker": speaker, **_timing(made),
+        for name, motion in made.items():
+            material.save(folder / name, f"{n:03d}", **motion)
+        poses = {name: motion["pose"] for name, motion in made.items()}
+        rows.append({"speaker": speaker, **_timing(poses),
                      **{f"{name} {key}": value for name in ("model", "target", "truth")
-                        for key, value in _habits(made[name]).items()}})
-    return {"pairs": len(pairs), "rivals": _rivals(found, folder), "dist": _dist(found, folder),
+                        for key, value in _habits(poses[name]).items()}})
+    report = _against(found, folder, "model", "target")
+    return {"pairs": len(pairs), "rivals": _rivals(found, folder), "nearness": _nearness(report),
+            "dist": _dist(report, _against(found, folder, "model", "truth"),
+                          _against(found, folder, "truth", "target")),
             "timing": {name: float(np.mean([row[name] for row in rows]))
                        for name in ("same speech", "other speech")},
             "style": _following(rows)}
+
+
+def _joined(motions):
+    return {stream: np.concatenate([motion[stream] for motion in motions]) for stream in motions[0]}
+
+
+def _still(x, length):
+    """The mean of (frames, columns), `length` times."""
+    return np.tile(x.mean(0, dtype=np.float64).astype(np.float32), (length, 1))
 
 
 def _pairs(data, condition, sources_of_each, most):
@@ -52,23 +63,38 @@ def _pairs(data, condition, sources_of_each, most):
 
 
 def _rivals(found, folder):
-    """{rival: mean error and correlation of the joints against the truth of the transfer}"""
+    """{rival: mean error and correlation of the joints against the truth of the transfer, and of the
+    landmarks where the network makes a face}"""
     figures = {}
     for name in RIVALS:
         all_of_it = found.evaluate(folder / name, folder / "truth")["all"]
-        figures[name] = {"rmse": all_of_it["means"][0]["rmse"], "pcc": all_of_it["means"][0]["pcc"],
+        groups = {group["group"]: group for group in all_of_it["means"]}
+        figures[name] = {"rmse": groups["body"]["rmse"], "pcc": groups["body"]["pcc"],
                          "per_point": all_of_it["minkowski"]["truth"]["per_point"]}
+        if "face" in groups:
+            figures[name] |= {"face_rmse": groups["face"]["rmse"],
+                              "face_pcc": groups["face"]["pcc"]}
     return figures
 
 
-def _dist(found, folder):
+def _against(found, folder, name, target):
+    """What `infer-cli eval` says of motion whose truth, source and target are known."""
+    return found.evaluate(folder / name, folder / "truth", "--source", folder / "copied source",
+                          "--target", folder / target)
+
+
+def _nearness(report):
+    """Table 7.6, and equation 7.5 of Table 7.5: is the motion nearer to the target speaker's than to
+    the source's, joints and landmarks alike, and how much of the source's is kept?"""
+    distances = report["all"]["minkowski"]
+    return {**{role: distances[role]["per_point"] for role in ("source", "target", "truth")},
+            "content": report["all"]["content_preservation"]}
+
+
+def _dist(report, exact, gesturer):
     """Eq. 6.9 of each measure: distances of all pairs added up, then put in proportion; the mean of
     the pairs' own percentages; and what the gesturer has, who knows the style: no two utterances of
     a speaker move alike."""
-    report, exact, gesturer = (
-        found.evaluate(folder / name, folder / "truth", "--source", folder / "copied source",
-                       "--target", folder / target)
-        for name, target in (("model", "target"), ("model", "truth"), ("truth", "target")))
     return {measure: {"pooled": _pooled(report, measure), "mean": _mean(report, measure),
                       "exact": _pooled(exact, measure), "gesturer": _pooled(gesturer, measure)}
             for measure in MEASURES}
@@ -92,11 +118,16 @@ def _speeds(pose):
     return np.convolve(speed, np.ones(3) / 3, mode="same")
 
 
-def _timing(made):
-    """Correlation of the wrists' speed with the truth's: of the same speech, and of another's."""
-    truth = _speeds(made["truth"])
-    return {"same speech": np.corrcoef(_speeds(made["model"]), truth)[0, 1],
-            "other speech": np.corrcoef(_speeds(made["shuffled audio"]), truth)[0, 1]}
+def _timing(poses):
+    """Correlation of the wrists' speed with the truth's: of the same speech, and of another's, as long
+    as both speak."""
+    return {"same speech": _together(poses["model"], poses["truth"]),
+            "other speech": _together(poses["shuffled audio"], poses["truth"])}
+
+
+def _together(pose, truth):
+    length = min(len(pose), len(truth))
+    return np.corrcoef(_speeds(pose[:length]), _speeds(truth[:length]))[0, 1]
 
 
 def _habits(pose):
