@@ -24,7 +24,8 @@ def add(commands):
                        help="instead of what the configuration says, as in options.dropout=0.2")
     train.add_argument("--threads", type=int, default=1, help="of a CPU (default %(default)s)")
     train.add_argument("--pretrained", action="append", default=[], metavar="NAME=RUN",
-                       help="Model 1: ae_speech and ae_face, trained before")
+                       help="a run to begin with: Model 1 takes ae_speech and ae_face, ZS-MSTM "
+                            "zs_mstm1")
     train.set_defaults(run=_train)
 
 
@@ -72,7 +73,10 @@ def _pretrained(text):
     name, equals, folder = text.partition("=")
     if not equals:
         raise ConvertError(f"--pretrained: {text}, expected NAME=RUN")
-    return name, torch.load(pathlib.Path(folder) / BEST, map_location="cpu")
+    path = pathlib.Path(folder) / BEST
+    if not path.is_file():
+        raise ConvertError(f"--pretrained: {path}: no such file, expected a folder that `train` wrote")
+    return name, torch.load(path, map_location="cpu")
 
 
 def export(task, configuration, folder):

@@ -57,15 +57,24 @@ def velocity(x, y):
 
 
 def behaviour(x, y, joints):
-    """How far the measures of eq. 6.9 are apart: the mean square of the logarithms' difference, over
-    speed, acceleration, jerk of the `joints` and the perimeter of the box around all points.
+    """How far the `measures` of two motions are apart: the mean square of the logarithms' difference.
+    Regression to the mean shows here and not in the mean square of poses."""
+    return (((measures(x, joints) + 1).log() - (measures(y, joints) + 1).log()) ** 2).mean()
 
-    x, y: (B, T, 2 * points) in units, x of every point and then y.  Regression to the mean shows here
-    and not in the mean square of poses.
-    """
-    pairs = [(_motion(x, joints, order), _motion(y, joints, order)) for order in (1, 2, 3)]
-    pairs.append((_perimeter(x), _perimeter(y)))
-    return sum(((torch.log(a + 1.0) - torch.log(b + 1.0)) ** 2).mean() for a, b in pairs) / 4
+
+def amount(x, y, joints, usual):
+    """The same in shares of `usual` measures (4, 1).  It is least where a motion has as much of each
+    as the other on the average; that of logarithms at the geometric mean, which of somebody who
+    moves now and then is less.  Quick windows weigh most in it: it is for networks that can move."""
+    return (((measures(x, joints) - measures(y, joints)) / usual) ** 2).mean()
+
+
+def measures(x, joints):
+    """What eq. 6.9 compares, of each of a batch: speed, acceleration and jerk of the `joints`, by the
+    frame, and the perimeter of the box around all points; (4, B).
+
+    x: (B, T, 2 * points) in units, x of every point and then y."""
+    return torch.stack([*(_motion(x, joints, order) for order in (1, 2, 3)), _perimeter(x)])
 
 
 def _motion(x, joints, order):

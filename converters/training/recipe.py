@@ -23,20 +23,22 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 # Name in the bundle, its configuration, minutes on one core at most, runs that it begins with.
 # The minutes are for slow machines: what is faster ends by its configuration's steps.
 MODELS = (
-    ("zs_mstm1", "demo_zs_mstm1", 70, {}),
-    ("model2", "demo_model2", 60, {}),
+    ("zs_mstm1_start", "demo_zs_mstm1", 90, {}),
+    ("model2", "demo_model2", 70, {}),
     ("ae_speech", "demo_ae_speech", 4, {}),
     ("ae_face", "demo_ae_face", 4, {}),
     ("model1", "demo_model1", 12, {"ae_speech": "ae_speech", "ae_face": "ae_face"}),
-    ("zs_mstm2", "demo_zs_mstm2", 20, {}),
     ("classifier", "demo_classifier", 4, {}),
+    ("zs_mstm2", "demo_zs_mstm2", 50, {"zs_mstm1": "zs_mstm1_start"}),
+    ("zs_mstm1", "demo_zs_mstm1_amount", 20, {"zs_mstm1": "zs_mstm1_start"}),
 )
-_ASKED = ("zs_mstm2",)  # trained only if --models names it: the demo has no use for it yet
+_STEPS = ("ae_speech", "ae_face", "zs_mstm1_start")  # others begin with them; not in the bundle
+_NARROW = {"zs_mstm2": "bf16"}  # the repository is to stay small
 _FRONT_END = (("bert", "demo_bert", 12), ("acts", "demo_acts", 3))
 # Does it all fit together?  Nobody learns to gesture in three seconds.
 _SMOKE_CORPUS = ("--hours", 0.01, "--speakers", 2, "--unseen", 1, "--texts", 400)
 _SMOKE_MINUTES = 0.05
-_SMOKE_MODELS = ("zs_mstm1", "model2")
+_SMOKE_MODELS = ("zs_mstm1_start", "model2", "zs_mstm2", "zs_mstm1")
 
 
 def add(commands):
@@ -46,7 +48,7 @@ def add(commands):
     demo.add_argument("-o", "--output", default="out/train", metavar="FOLDER")
     demo.add_argument("--seed", type=int, default=1)
     demo.add_argument("--hours", type=float, help="of speech, if not as `corpus` has it")
-    demo.add_argument("--models", help="names, separated by commas (default: all but zs_mstm2)")
+    demo.add_argument("--models", help="names, separated by commas (default: all)")
     demo.add_argument("--jobs", type=int, default=2,
                       help="processes, of one thread each; trainings that need nothing of each "
                            "other go on at once (default %(default)s)")
@@ -74,7 +76,7 @@ class Recipe:
     def __init__(self, options):
         self.options, self.folder = options, pathlib.Path(options.output)
         wanted = options.models.split(",") if options.models else (
-            _SMOKE_MODELS if options.smoke else [name for name, *_ in MODELS if name not in _ASKED])
+            _SMOKE_MODELS if options.smoke else [name for name, *_ in MODELS])
         known = {name for name, *_ in MODELS}
         for name in wanted:
             if name not in known:
@@ -126,27 +128,35 @@ class Recipe:
                    prefix=f"{name}: ")
 
     def bundle(self):
-        """Everything in one file, with ZS-MSTM 1.0's discriminator; autoencoders are parts of
-        Model 1."""
-        names = [name for name, *_ in self.models if not name.startswith("ae_")]
-        parts = [f"{name}={self.folder / name / 'weights.fb'}" for name in names]
+        """Everything in one file, with ZS-MSTM 1.0's discriminator."""
+        names = [name for name, *_ in self.models if name not in _STEPS]
+        parts = [f"{name}={self._bundled(name)}" for name in names]
         if "zs_mstm1" in names:
             parts.append(f"discriminator={self.folder / 'zs_mstm1' / 'discriminator.fb'}")
         self._step(None, "bundle", *parts, self.folder / "front_end.fb", "-o",
                    self.folder / "demo.fb", module="converters")
 
+    def _bundled(self, name):
+        """The weights file of a network as the bundle takes it."""
+        weights = self.folder / name / "weights.fb"
+        if name not in _NARROW:
+            return weights
+        narrow = self.folder / name / f"weights-{_NARROW[name]}.fb"
+        self._step(None, "quantise", weights, "--to", _NARROW[name], "--infer-cli",
+                   self.options.infer_cli, "-o", narrow, module="converters")
+        return narrow
+
     def styles(self):
-        """Of the liveliest speaker and of a calm one, for the demo; the very calmest hardly move."""
-        if "zs_mstm1" not in [name for name, *_ in self.models]:
-            return
+        """Those that the demo shows, each for the network that it is shown with."""
         found = Material(self.folder / "corpus", self.folder / "data", self.folder / "demo.fb",
                          self.options.infer_cli, self.folder / "work")
         known = json.loads((self.folder / "corpus" / "index.json").read_text())["speakers"]
-        order = sorted(found.data.speakers("train"), key=lambda name: liveliness(
-            known[name]["style"]))
-        for name, speaker in (("calm", order[len(order) // 20]), ("lively", order[-1])):
-            shutil.copyfile(found.style(speaker, "zs_mstm1"), self.folder / f"{name}.style")
-            print(f"{self.folder / name}.style: of {speaker}")
+        trained = {name for name, *_ in self.models}
+        for name, (network, speaker) in shown_speakers(
+                {speaker: known[speaker]["style"] for speaker in found.data.speakers("train")}).items():
+            if network in trained:
+                shutil.copyfile(found.style(speaker, network), self.folder / f"{name}.style")
+                print(f"{self.folder / name}.style: of {speaker}")
 
     def held_out(self):
         """Motion of a recording that no training saw."""
@@ -172,6 +182,16 @@ class Recipe:
                 print(prefix + line, end="", file=sys.stderr, flush=True)
         if running.returncode != 0:
             raise ConvertError(f"python3 -m {module} {arguments[0]}: failed, see above")
+
+
+def shown_speakers(styles):
+    """{style file: (network, speaker)} for the demo, of {speaker: style}: a calm one (the very calmest
+    hardly move), the liveliest, and of those that the face shows most the liveliest."""
+    order = sorted(styles, key=lambda speaker: liveliness(styles[speaker]))
+    faces = sorted(order, key=lambda speaker: styles[speaker]["face"] * styles[speaker]["head"])
+    expressive = max(faces[-max(1, len(faces) // 10):], key=order.index)
+    return {"calm": ("zs_mstm1", order[len(order) // 20]), "lively": ("zs_mstm1", order[-1]),
+            "expressive": ("zs_mstm2", expressive)}
 
 
 def liveliness(style):

@@ -70,6 +70,10 @@ def test_behaviour_compares_the_measures_of_equation_6_9():
 
     want = ((np.log(measures(x) + 1) - np.log(measures(y) + 1)) ** 2).mean(1).sum() / 4
     assert float(losses.behaviour(tensor(x), tensor(y), joints)) == pytest.approx(want, rel=1e-4)
+    usual = np.array([[3.0], [5.0], [9.0], [200.0]])
+    want = (((measures(x) - measures(y)) / usual) ** 2).mean()
+    found = losses.amount(tensor(x), tensor(y), joints, tensor(usual))
+    assert float(found) == pytest.approx(want, rel=1e-4)
 
 
 def test_noam_is_that_of_vaswani():

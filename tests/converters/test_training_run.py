@@ -147,6 +147,56 @@ def test_evidence_goes_through_a_sample_of_the_seen_styles(data):
     assert len(list(transfer._pairs(Speakers(), "seen", 1, None))) == 8
 
 
+@pytest.mark.parametrize("kind, streams", [("zs_mstm1", {"pose"}), ("zs_mstm2", {"pose", "face"})])
+def test_a_style_of_the_evidence_is_made_of_what_the_network_takes(train, data, tmp_path, kind,
+                                                                   streams):
+    """The dialog acts are those of each segment of the clip, as `sampling` has them in training."""
+    from converters.training.data import sampling
+    from converters.training.evidence.material import Material
+    _, folder, _ = train(training_data.configuration(kind, steps=1, dev_every=1), "run")
+    found = Material(tmp_path, data, folder / "weights.fb", CLI, tmp_path / "work")
+    record = weights_file.read(folder / "weights.fb").networks[0]
+    network = record["name"]
+    assert set(found.streams(network)) == streams
+    with pytest.raises(ConvertError, match="no network other"):
+        found.streams("other")
+    utterance = found.data.select("train")[0]
+    clip = found._clip(utterance, network)
+    arrays = found.data.load(utterance)
+    for stream in {"speech", "text"} | streams:
+        np.testing.assert_array_equal(clip[f"style_{stream}"], arrays[stream])
+    if "face" in streams:
+        frames = record["config"]["core"]["frames"]
+        segments = sampling.segments([utterance], frames)
+        want = [arrays["tags"][first:first + frames].max(0) for _, first in segments]
+        np.testing.assert_array_equal(clip["style_tags"], want)
+
+
+def test_evidence_measures_motion_of_other_lengths(tmp_path):
+    """The same style with other speech is compared while both speak; nothing else is cut."""
+    from converters.training.evidence import transfer
+    rng = np.random.default_rng(4)
+    truth = rng.normal(size=(90, 22)).cumsum(0)
+    poses = {"model": truth, "truth": truth, "shuffled audio": truth[:50]}
+    assert transfer._timing(poses) == pytest.approx({"same speech": 1.0, "other speech": 1.0})
+    joined = transfer._joined([{"pose": truth}, {"pose": truth[:7]}])["pose"]
+    assert joined.shape == (97, 22)
+    np.testing.assert_allclose(transfer._still(joined, 3), [joined.mean(0)] * 3, rtol=1e-6)
+
+
+def test_the_demo_shows_a_calm_a_lively_and_an_expressive_speaker():
+    from converters.training import recipe
+    neutral = {"amplitude": 1.0, "velocity": 1.0, "frequency": 0.5, "arms": 0.0, "head": 1.0,
+               "face": 1.0}
+    styles = {f"s{n:02d}": {**neutral, "amplitude": 0.6 + 0.02 * n} for n in range(40)}
+    styles["s10"] |= {"face": 1.4, "head": 1.4}
+    styles["s11"] |= {"face": 1.5, "head": 1.5}
+    styles["s39"] |= {"frequency": 1.0}
+    found = recipe.shown_speakers(styles)
+    assert found["calm"] == ("zs_mstm1", "s02") and found["lively"] == ("zs_mstm1", "s39")
+    assert found["expressive"][0] == "zs_mstm2"
+
+
 def test_the_recipe_trains_at_once_what_needs_nothing_of_each_other(tmp_path, monkeypatch):
     from converters.training import recipe
     log = []
@@ -226,6 +276,40 @@ def test_model1_begins_with_the_autoencoders(train):
                                    face["decoder.lstm1.weight_ih_l0"])
 
 
+def test_zs_mstm_begins_with_a_trained_one(train):
+    """1.0 is continued as it is; in 2.0 whatever 1.0 has begins as there, in both decoders, and what
+    only 2.0 has stays as PyTorch draws it."""
+    def run(kind, name, *options, **changes):
+        code, folder, said = train(training_data.configuration(
+            kind, steps=1, schedule={"name": "constant", "rate": 1e-12}, **changes), name, *options)
+        assert code == 0, said
+        return torch.load(folder / "best.pt"), folder
+
+    core = training_data.configuration("zs_mstm2")["network"]["config"]["core"]
+    core = {**core, "ast_content": {**core["ast_content"], "head": "LayerNormLinear"}}
+    first, folder = run("zs_mstm1", "first", network={"config": core}, seed=3)
+    begin = f"--pretrained=zs_mstm1={folder}"
+    again, _ = run("zs_mstm1", "again", begin, network={"config": core})
+    for key, x in first.items():
+        torch.testing.assert_close(again[key], x)
+    plain, _ = run("zs_mstm2", "plain")
+    second, _ = run("zs_mstm2", "second", begin)
+    columns = first["dense.weight"].shape[1]
+    assert second["pose_generator.dense.weight"].shape[1] > columns
+    for stream in ("pose", "face"):
+        for key, x in first.items():
+            if key.startswith("decoder."):
+                torch.testing.assert_close(second[f"{stream}_generator.{key}"], x)
+        dense = second[f"{stream}_generator.dense.weight"]
+        torch.testing.assert_close(dense[:, :columns], first["dense.weight"])
+        torch.testing.assert_close(dense[:, columns:],
+                                   plain[f"{stream}_generator.dense.weight"][:, columns:])
+    for key in ("pose_lstm.weight_ih_l0", "style_attention.in_proj_weight"):
+        torch.testing.assert_close(second[key], first[key])
+    for key in ("face_lstm.weight_ih_l0", "face_generator.head.weight"):
+        torch.testing.assert_close(second[key], plain[key])
+
+
 @pytest.mark.parametrize("changes, message", [
     ({"kind": "zs"}, 'kind: "zs", expected one of acts, '),
     ({"batch": 0}, "batch: 0, expected a whole number of at least 1"),
@@ -254,6 +338,7 @@ def test_faults_of_the_command_line(train, tmp_path, capfd):
     for options, message in ((["--device", "cuda:77"], "--device: cuda:77: "),
                              (["--minutes", "-1"], "--minutes: -1.0"),
                              (["--pretrained", "x"], "expected NAME=RUN"),
+                             (["--pretrained", "zs_mstm1=/nowhere"], "/nowhere/best.pt: no such"),
                              (["--set", "steps"], "--set: steps, expected FIELD=JSON"),
                              (["--set", "steps.most=1"], "steps.most=1: steps is no object"),
                              (["--set", "steps=many"], "--set: steps: no JSON"),

@@ -20,7 +20,7 @@ _ADAM = {"name": "adam", "betas": [0.95, 0.999]}
 def configuration(kind, **changes):
     network, options = _NETWORKS[kind], {}
     if kind.startswith("zs"):
-        options = {"velocity": 0.5, "behaviour": 0.1, "discriminator": {"hidden": 8},
+        options = {"velocity": 0.5, "behaviour": 0.1, "amount": 0.1, "discriminator": {"hidden": 8},
                    "style_segments": 2, "strange_voices": 0.5}
     return {"kind": kind, "network": {"config": network}, "options": options, "optimiser": _ADAM,
             "schedule": {"name": "constant", "rate": 0.003}, "batch": 4, "steps": 6,

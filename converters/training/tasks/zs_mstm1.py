@@ -29,6 +29,7 @@ class Task(BaseTask):
         "strange_voices": 0.0,
         "velocity": 0.0,        # weight of losses.velocity, beside the thesis' losses
         "behaviour": 0.0,       # of losses.behaviour
+        "amount": 0.0,          # of losses.amount
         "fader_step": 0.01,     # lambda's growth a step, and its end; 0: no fader loss
         "fader_maximum": 1.0,
         "fader_moves_style": True,  # eq. 6.7 is of E_content and E_style
@@ -47,6 +48,7 @@ class Task(BaseTask):
         self._dev, self._speakers = sampling.segments(data.select("dev"), self.window), {}
         self.joints = [n for n, joint in enumerate(self.network.get("joints", []))
                        if joint["source"] in _WRISTS] or list(range(core["d_pose"] // 2))
+        self.usual = self._usual_measures()
         self._add_discriminator()
 
     def core_of(self, config):
@@ -88,6 +90,16 @@ class Task(BaseTask):
                 for n, layer in enumerate(generator.decoder.layers):
                     starts.look_back(layer.self_attn, starts.offsets(n, layer.self_attn.num_heads))
 
+    def take_pretrained(self, states):
+        """Begins with the weights of a ZS-MSTM 1.0; its state_dict by name."""
+        for key, x in states.get("zs_mstm1", {}).items():
+            for ours in self.places_of(key):
+                _copy_beginning(x, self.module.weights().state_dict().get(ours))
+
+    def places_of(self, key):
+        """Where a tensor of ZS-MSTM 1.0 is found in this network."""
+        return [key]
+
     def _add_discriminator(self):
         core = self.core
         rows = 1 if core["granularity"] == "Segment" else core["frames"]
@@ -97,6 +109,14 @@ class Task(BaseTask):
             "d_style": self.d_style(self.network["config"])}})
         self.dis = reference.new(self.dis_network).float().to(self.device)
         self.dis_optimiser = self.optimiser_of(self.dis.parameters())
+
+    def _usual_measures(self):
+        """The mean of losses.measures over the training utterances, (4, 1)."""
+        poses = [self.data.load(u)["pose"] for u in {u.id: u for u, _ in self.items}.values()]
+        if not poses:
+            return torch.ones(4, 1)
+        found = [losses.measures(self.tensor(pose)[None], self.joints) for pose in poses]
+        return torch.stack(found).mean(0).clamp_min(1.0)
 
     # ------------------------------------------------------------------------------------- batches
 
@@ -164,10 +184,11 @@ class Task(BaseTask):
             truth = getattr(self.module, stream).apply(segments[stream])
             found["reconstruction"] += losses.squares(x, truth)
             found["velocity"] += losses.velocity(x, truth)
-        found["behaviour"] = losses.behaviour(self.module.pose.undo(made["pose"]),
-                                              segments["pose"], self.joints)
-        return {"loss": found["reconstruction"] + self.o["velocity"] * found["velocity"]
-                + self.o["behaviour"] * found["behaviour"], **found}
+        x, truth = self.module.pose.undo(made["pose"]), segments["pose"]
+        found["behaviour"] = losses.behaviour(x, truth, self.joints)
+        found["amount"] = losses.amount(x, truth, self.joints, self.usual)
+        weighted = (self.o[name] * found[name] for name in ("velocity", "behaviour", "amount"))
+        return {"loss": found["reconstruction"] + sum(weighted), **found}
 
     def step(self, chosen, rng, step):
         """Dis, then the generator: alternately, as Lample et al. 2017."""
@@ -218,3 +239,10 @@ class Task(BaseTask):
     def exports(self):
         state = self.dis.weights().state_dict()
         return [("discriminator", self.dis_network, {k: x.cpu() for k, x in state.items()})]
+
+
+def _copy_beginning(x, ours):
+    """As much of x as `ours` has the place for: a layer that takes more keeps what it began with for
+    that.  Nothing where they differ otherwise."""
+    if ours is not None and ours.shape[:-1] == x.shape[:-1] and ours.shape[-1] >= x.shape[-1]:
+        ours[..., :x.shape[-1]].copy_(x)

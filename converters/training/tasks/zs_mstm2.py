@@ -17,3 +17,9 @@ class Task(zs_mstm1.Task):
 
     def with_widths(self, config):
         return {**config, "core": super().with_widths(dict(config.get("core", {})))}
+
+    def places_of(self, key):
+        """Both decoders begin as that of 1.0, which knows when to move."""
+        if key.split(".")[0] in ("dense", "decoder", "head", "embedding"):
+            return [f"{stream}_generator.{key}" for stream in ("pose", "face")] + [key]
+        return [key]
