@@ -1,7 +1,7 @@
 #!/bin/bash
 # No system call between the two getppid() calls of steady_state with one thread; with two threads
-# only those by which they wait for each other or keep off each other's processor.  Exit 77 (skipped)
-# where tracing is not to be had.
+# only those by which they wait for each other or, once a run, keep off each other's processor.  Exit
+# 77 (skipped) where tracing is not to be had.
 # Usage: no_syscalls.sh STEADY_STATE WEIGHTS THREADS REPEATS ALLOWED
 set -euo pipefail
 program=$1 weights=$2 threads=$3 repeats=$4 allowed=$5
@@ -17,6 +17,15 @@ found=$(awk -v allowed="$allowed" '
 if [[ -n $found ]]; then
   echo "system calls in the steady state:"
   head -n 5 <<<"$found"
+  exit 1
+fi
+# A worker that joins a run asks for the caller's processors and leaves one of them: two calls.  A
+# repetition is two runs, that of the style encoder and that of the generator.
+moves=$(awk '/getppid/ { if (/ getppid\(/) ++marks } marks == 1 && /affinity\(/ { ++n }
+  END { print n + 0 }' "$log")
+most=$((4 * repeats * (threads - 1)))
+if [[ $moves -gt $most ]]; then
+  echo "$moves calls for the affinity of threads, expected at most $most"
   exit 1
 fi
 echo "$repeats runs with $threads thread(s): none${allowed:+ but $allowed}"
