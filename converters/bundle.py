@@ -94,4 +94,8 @@ def _provenance(origins):
 
 
 def _said(values):
-    return "; ".join(f"{name}: {value}" for name, value in values.items())
+    """"NAME, NAME: TEXT; NAME: TEXT", each text once."""
+    names = {}
+    for name, value in values.items():
+        names.setdefault(value, []).append(name)
+    return "; ".join(f"{', '.join(who)}: {value}" for value, who in names.items())

@@ -70,6 +70,10 @@ def test_provenance(files, tmp_path):
     assert p["licence"] == "bert: as gestus; classifier: MIT"
     checksum = weights_file.read(files["bert"]).header["checksum"]
     assert f"bert: bert_vocabulary.fb checksum:{checksum:016x} (bert.bin sha256:12)" in p["source"]
+    rewrite(files["discriminator"], trained=True, trained_on="books")
+    main(["bundle", files["bert"], files["classifier"], files["discriminator"], "-o", out])
+    assert weights_file.read(out).provenance["trained_on"] == "bert, discriminator: books"
+    rewrite(files["discriminator"], trained=False)
     main(["bundle", files["bert"], files["discriminator"], "-o", out])
     p = weights_file.read(out).provenance
     assert not p["trained"] and p["recipe"].startswith("untrained: discriminator; bert: golden")
