@@ -184,6 +184,31 @@ def test_evidence_measures_motion_of_other_lengths(tmp_path):
     np.testing.assert_allclose(transfer._still(joined, 3), [joined.mean(0)] * 3, rtol=1e-6)
 
 
+def test_expressions_are_told_from_turns_of_the_head():
+    """A mouth that opens and brows that rise, by hand, in a face that nods: y of OpenPose's points."""
+    from converters.kinds.zs_mstm2 import FACE_POINTS
+    from converters.training.evidence import transfer
+    points = [n for n, _ in FACE_POINTS]
+    rest = np.array([place for _, place in FACE_POINTS], float)
+    t = np.linspace(0, 6, 50)
+    face = np.tile(rest.T.reshape(-1), (50, 1))
+    y = face.reshape(50, 2, -1)[:, 1]
+    y += 5 * np.sin(t)[:, None]
+    y[:, points.index(8)] += np.cos(3 * t)
+    y[:, [points.index(n) for n in (17, 19, 21, 22, 24, 26)]] -= 2 * np.cos(5 * t)[:, None]
+    y[:, [points.index(n) for n in (41, 46)]] += np.cos(2 * t)[:, None]
+    found = transfer._expressions(face)
+    eyes = 0.5 * np.cos(2 * t)  # the lower lids take part in where the eyes are
+    for name, want in (("jaw", np.cos(3 * t) - eyes), ("brows", 2 * np.cos(5 * t)),
+                       ("lids", np.cos(2 * t)), ("nods", 5 * np.sin(t) + eyes)):
+        np.testing.assert_allclose(found[name] - found[name][0], want - want[0], atol=1e-9)
+    half = {name: x / 2 for name, x in found.items()}
+    told = transfer._expressing({"model": half, "truth": found, "shuffled audio": {
+        name: -x[:40] for name, x in found.items()}})
+    for same, other, extent in told.values():
+        assert (same, other, extent) == pytest.approx((1.0, -1.0, 0.5))
+
+
 def test_the_demo_shows_a_calm_a_lively_and_an_expressive_speaker():
     from converters.training import recipe
     neutral = {"amplitude": 1.0, "velocity": 1.0, "frequency": 0.5, "arms": 0.0, "head": 1.0,

@@ -34,7 +34,13 @@ def _transfer(found):
     style = _table(("habit of the target speakers", "PCC of the model", "PCC of the gesturer"),
                    [(name, f"{x['model']:.2f}", f"{x['truth']:.2f}")
                     for name, x in found["style"].items()])
-    return "\n".join((rivals, nearness, dist, timing, style))
+    tables = [rivals, nearness, dist, timing, style]
+    if found.get("expressions"):
+        tables.append(_table(("part of the face", "PCC with the truth", "with other speech",
+                              "deviation, share of the truth's"),
+                             [(name, *(f"{x:.2f}" for x in values))
+                              for name, values in found["expressions"].items()]))
+    return "\n".join(tables)
 
 
 def _rivals(rivals):

@@ -3,6 +3,7 @@ timing come from the speech?"""
 
 import numpy as np
 
+from ...kinds import zs_mstm2
 from . import material
 
 _WRISTS = (3, 6)
@@ -15,7 +16,7 @@ def evidence(found, network, condition, sources_of_each, most=None):
     """The figures of one condition, "seen" or "unseen" styles, `most` of them, as a dictionary."""
     pairs = list(_pairs(found.data, condition, sources_of_each, most))
     folder = found.work / f"{network}-{condition}"
-    rows = []
+    rows, faces = [], []
     for n, (utterance, other, speaker) in enumerate(pairs):
         made = {"model": found.motion(utterance, speaker, network),
                 "truth": found.truth(utterance, speaker, network),
@@ -28,6 +29,9 @@ def evidence(found, network, condition, sources_of_each, most=None):
         for name, motion in made.items():
             material.save(folder / name, f"{n:03d}", **motion)
         poses = {name: motion["pose"] for name, motion in made.items()}
+        if "face" in made["model"]:
+            faces.append(_expressing({name: _expressions(made[name]["face"])
+                                      for name in ("model", "shuffled audio", "truth")}))
         rows.append({"speaker": speaker, **_timing(poses),
                      **{f"{name} {key}": value for name in ("model", "target", "truth")
                         for key, value in _habits(poses[name]).items()}})
@@ -37,7 +41,9 @@ def evidence(found, network, condition, sources_of_each, most=None):
                           _against(found, folder, "truth", "target")),
             "timing": {name: float(np.mean([row[name] for row in rows]))
                        for name in ("same speech", "other speech")},
-            "style": _following(rows)}
+            "style": _following(rows),
+            "expressions": {part: np.mean([face[part] for face in faces], 0).tolist()
+                            for part in (faces[0] if faces else ())}}
 
 
 def _joined(motions):
@@ -127,7 +133,35 @@ def _timing(poses):
 
 def _together(pose, truth):
     length = min(len(pose), len(truth))
-    return np.corrcoef(_speeds(pose[:length]), _speeds(truth[:length]))[0, 1]
+    return _correlation(_speeds(pose[:length]), _speeds(truth[:length]))
+
+
+def _correlation(x, y):
+    length = min(len(x), len(y))
+    return np.corrcoef(x[:length], y[:length])[0, 1]
+
+
+def _expressions(face):
+    """What a face does beside turning, (T,) units each, as distances in the picture: the jaw's and the
+    brows' from the eyes, between the lids; and the eyes' own from the neck, which are nods."""
+    points, y = [n for n, _ in zs_mstm2.FACE_POINTS], face.reshape(len(face), 2, -1)[:, 1]
+
+    def height(*numbers):
+        return y[:, [points.index(n) for n in numbers]].mean(1)
+
+    upper, lower = height(37, 44), height(41, 46)
+    eyes = (upper + lower) / 2
+    return {"jaw": height(8) - eyes, "brows": upper - height(17, 19, 21, 22, 24, 26),
+            "lids": lower - upper, "nods": eyes}
+
+
+def _expressing(parts):
+    """{part: (correlation with the truth of the same speech, with other speech, deviation as a share
+    of the truth's)}"""
+    return {name: (_correlation(parts["model"][name], truth),
+                   _correlation(parts["shuffled audio"][name], truth),
+                   parts["model"][name].std() / truth.std())
+            for name, truth in parts["truth"].items()}
 
 
 def _habits(pose):
