@@ -2,6 +2,7 @@
 
 import json
 import pathlib
+import sys
 
 from .. import __main__ as converters
 from ..errors import ConvertError
@@ -43,11 +44,8 @@ def _train(options):
         raise ConvertError(f"--minutes: {options.minutes}, expected more than 0")
     task_class = tasks.of(found["kind"])
     task = task_class(found, task_class.open_data(options.data), device(options.device))
-    states = dict(_pretrained(text) for text in options.pretrained)
-    if states:
-        if not hasattr(task, "take_pretrained"):
-            raise ConvertError(f"--pretrained: kind {found['kind']} takes nothing")
-        task.take_pretrained(states)
+    if options.pretrained:
+        _begin_with(task, dict(_pretrained(text) for text in options.pretrained))
     trainer = Trainer(task, found, options.output)
     if options.resume:
         trainer.resume()
@@ -65,6 +63,18 @@ def device(name):
     except (RuntimeError, AssertionError) as error:
         raise ConvertError(f"--device: {name}: {str(error).splitlines()[0]}") from None
     return found
+
+
+def _begin_with(task, states):
+    for name in states:
+        if name not in task.pretrained:
+            raise ConvertError(f"--pretrained: {name}, kind {task.kind} takes "
+                               + (" and ".join(task.pretrained) or "nothing"))
+    taken = task.take_pretrained(states)
+    if not taken:
+        raise ConvertError("--pretrained: no tensor has the shape of one here, expected a network of "
+                           "the same sizes")
+    print(f"begins with {taken} tensors of {', '.join(states)}", file=sys.stderr)
 
 
 def _pretrained(text):

@@ -333,6 +333,12 @@ def test_zs_mstm_begins_with_a_trained_one(train):
         torch.testing.assert_close(second[key], first[key])
     for key in ("face_lstm.weight_ih_l0", "face_generator.head.weight"):
         torch.testing.assert_close(second[key], plain[key])
+    for name, fault in (("zs_mstm", "zs_mstm, kind zs_mstm2 takes zs_mstm1"),
+                        ("zs_mstm1", "no tensor has the shape of one here")):
+        torch.save({"dense.weight": torch.zeros(3, 5)}, folder / "best.pt")
+        code, _, said = train(training_data.configuration("zs_mstm2"), "fault",
+                              f"--pretrained={name}={folder}")
+        assert code == 2 and fault in said and said.count("\n") == 1
 
 
 @pytest.mark.parametrize("changes, message", [

@@ -11,6 +11,7 @@ from .task import BaseTask
 
 class Task(BaseTask):
     kind = "model1"
+    pretrained = ("ae_speech", "ae_face")
     options = {}
 
     def __init__(self, configuration, data, device):
@@ -28,9 +29,8 @@ class Task(BaseTask):
         return {"normalisations": [statistics.of("f0", f0, False)], **given, "config": config}
 
     def take_pretrained(self, states):
-        """E_speech of AE_speech and, where it fits, D_face of AE_face (5.5.3); state_dicts by
-        name."""
-        own = self.module.state_dict()
+        """E_speech of AE_speech and, where it fits, D_face of AE_face (5.5.3)."""
+        own, taken = self.module.state_dict(), 0
         for name, source, targets in (
                 ("ae_speech", "encoder.", ["e1_speech."]),
                 ("ae_face", "decoder.", [f"d_face.{n}." for n in range(len(self.module.d_face))])):
@@ -39,6 +39,8 @@ class Task(BaseTask):
                     ours = target + key.removeprefix(source)
                     if ours in own and own[ours].shape == x.shape:
                         own[ours].copy_(x)
+                        taken += 1
+        return taken
 
     def dev_items(self):
         return self._dev

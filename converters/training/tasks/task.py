@@ -14,9 +14,12 @@ class BaseTask:
         items           what an epoch goes through
         losses(chosen, rng, step)   {"loss": tensor to step down, other names: tensors to show}
         dev(rng)        {"loss": what the best weights have least of, ...} as numbers
+        take_pretrained(states)     begins with state_dicts by name, one or more of `pretrained`;
+                        how many tensors it took
     """
 
     kind = ""
+    pretrained = ()
     options = {}
 
     @staticmethod

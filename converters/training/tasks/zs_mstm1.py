@@ -20,6 +20,7 @@ _WRISTS = (3, 6)  # of PATS' joints
 class Task(BaseTask):
     kind = "zs_mstm1"
     streams = ("speech", "text", "pose")
+    pretrained = ("zs_mstm1",)
     options = {
         # "other": the style clip is of other utterances of the speaker; "same": the segment itself.
         "style_clip": "other",
@@ -91,10 +92,10 @@ class Task(BaseTask):
                     starts.look_back(layer.self_attn, starts.offsets(n, layer.self_attn.num_heads))
 
     def take_pretrained(self, states):
-        """Begins with the weights of a ZS-MSTM 1.0; its state_dict by name."""
-        for key, x in states.get("zs_mstm1", {}).items():
-            for ours in self.places_of(key):
-                _copy_beginning(x, self.module.weights().state_dict().get(ours))
+        """Begins with the weights of a ZS-MSTM 1.0."""
+        own = self.module.weights().state_dict()
+        return sum(_copy_beginning(x, own.get(ours)) for key, x in states["zs_mstm1"].items()
+                   for ours in self.places_of(key))
 
     def places_of(self, key):
         """Where a tensor of ZS-MSTM 1.0 is found in this network."""
@@ -243,6 +244,8 @@ class Task(BaseTask):
 
 def _copy_beginning(x, ours):
     """As much of x as `ours` has the place for: a layer that takes more keeps what it began with for
-    that.  Nothing where they differ otherwise."""
-    if ours is not None and ours.shape[:-1] == x.shape[:-1] and ours.shape[-1] >= x.shape[-1]:
+    that.  Nothing, and False, where they differ otherwise."""
+    fits = ours is not None and ours.shape[:-1] == x.shape[:-1] and ours.shape[-1] >= x.shape[-1]
+    if fits:
         ours[..., :x.shape[-1]].copy_(x)
+    return fits
